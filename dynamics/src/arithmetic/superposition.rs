@@ -26,9 +26,9 @@ pub(crate) struct Superposition {
 }
 
 impl Superposition {
-    /// Of rows of `length` numbers each, one after the other.
-    pub(crate) fn new(length: usize, entries: &[f64]) -> Self {
-        let mut all = Self::zeros(length, entries.len() / length.max(1));
+    /// Of rows of `length` numbers each, one after the other, in the room of this one.
+    pub(crate) fn of_rows(self, length: usize, entries: &[f64]) -> Self {
+        let mut all = self.zeros(length, entries.len() / length.max(1));
         for strip in strips(all.registers) {
             let rows = all.entries[strip.start * all.count..strip.end * all.count].chunks_exact_mut(strip.len());
             for (to, from) in rows.zip(entries.chunks_exact(length)) {
@@ -39,9 +39,9 @@ impl Superposition {
         all
     }
 
-    /// Of the columns of a matrix that is given row by row, `length` rows of `columns` numbers.
-    pub(crate) fn transposed(length: usize, columns: usize, entries: &[f64]) -> Self {
-        let mut all = Self::zeros(length, columns);
+    /// The same of the columns of a matrix that is given row by row, `length` rows of `columns` numbers.
+    pub(crate) fn of_columns(self, length: usize, columns: usize, entries: &[f64]) -> Self {
+        let mut all = self.zeros(length, columns);
         for strip in strips(all.registers) {
             let rows = &mut all.entries[strip.start * columns..strip.end * columns];
             for i in strip.start * WIDTH..length.min(strip.end * WIDTH) {
@@ -52,9 +52,11 @@ impl Superposition {
         all
     }
 
-    fn zeros(length: usize, count: usize) -> Self {
+    fn zeros(mut self, length: usize, count: usize) -> Self {
         let registers = length.div_ceil(WIDTH);
-        Self { length, registers, count, entries: vec![[0.0; WIDTH]; count * registers] }
+        self.entries.clear();
+        self.entries.resize(count * registers, [0.0; WIDTH]);
+        Self { length, registers, count, ..self }
     }
 
     /// Numbers that it keeps.
@@ -141,14 +143,14 @@ mod tests {
             for (x, row) in x.iter().zip(entries.chunks(count.max(1))) {
                 expected.iter_mut().zip(row).for_each(|(sum, entry)| *sum += entry * x);
             }
-            let matrix = Superposition::new(count, &entries);
+            let matrix = Superposition::default().of_rows(count, &entries);
             let (mut here, mut everywhere) = (vec![0.0; count], vec![0.0; count]);
             matrix.sum(&x, &mut here);
             matrix.sum_by_registers(&x, &mut everywhere);
             assert_eq!([&here, &everywhere], [&expected; 2], "{length} numbers");
             let columns: Vec<f64> =
                 (0..count).flat_map(|i| (0..7).map(move |k| (i, k))).map(|(i, k)| entries[k * count + i]).collect();
-            assert_eq!(Superposition::transposed(count, 7, &columns).entries, matrix.entries);
+            assert_eq!(Superposition::default().of_columns(count, 7, &columns).entries, matrix.entries);
         }
     }
 }

@@ -137,15 +137,16 @@ pub(crate) fn turns_alone([_, q, r, _]: [f64; 4], decay: f64) -> bool {
 }
 
 impl Propagator {
-    /// Of the blocks that have a matrix.
-    pub(crate) fn of(matrices: &[[f64; 4]], blocks: &[Block]) -> Vec<Self> {
-        let all: Vec<_> = matrices.iter().zip(blocks).map(|(matrix, block)| (*matrix, block.decay)).collect();
-        all.chunks(WIDTH).map(Self::new).collect()
+    /// Of the blocks that have a matrix, in the `room` of others.
+    pub(crate) fn of(mut room: Vec<Self>, matrices: &[[f64; 4]], blocks: &[Block]) -> Vec<Self> {
+        room.clear();
+        room.extend(matrices.chunks(WIDTH).zip(blocks.chunks(WIDTH)).map(|(own, blocks)| Self::new(own, blocks)));
+        room
     }
 
-    fn new(several: &[([f64; 4], f64)]) -> Self {
+    fn new(matrices: &[[f64; 4]], blocks: &[Block]) -> Self {
         let mut lanes = [[0.0; WIDTH]; 6];
-        for (lane, &(matrix, decay)) in several.iter().enumerate() {
+        for (lane, (&matrix, &Block { decay, .. })) in matrices.iter().zip(blocks).enumerate() {
             let [p, q, r, s] = matrix;
             let entries = if turns_alone(matrix, decay) {
                 [0.0, 1.0, -1.0, 0.0, 1.0, 0.0]
@@ -271,11 +272,15 @@ impl Blocks {
 }
 
 impl Bank {
-    pub(crate) fn new(blocks: &[Block]) -> Self {
+    /// Of these blocks, in the room of this one.
+    pub(crate) fn of(self, blocks: &[Block]) -> Self {
         let chosen = |which: fn(&Block) -> bool| (0..blocks.len()).filter(|&k| which(&blocks[k])).collect();
+        let mut all = self.blocks;
+        all.clear();
+        all.extend(blocks.chunks(WIDTH).map(Blocks::new));
         Self {
             count: blocks.len(),
-            blocks: blocks.chunks(WIDTH).map(Blocks::new).collect(),
+            blocks: all,
             others: chosen(|block| !(block.oscillates() || block.is_single())),
             near_critical: chosen(Block::is_near_critical),
         }
@@ -302,7 +307,7 @@ mod tests {
         let matrices =
             [[0.0, 1.0, -1000.0, -3.0], [0.0, 1.0, -25.0, -10.0], [0.0, 1.0, -9.0, -40.0], [0.0, 1.0, 0.0, 0.0]];
         let each = matrices.map(Block::new);
-        let bank = Bank::new(&each);
+        let bank = Bank::default().of(&each);
         let mut first = [Kernels::NONE];
         bank.kernels(&each, 0.037, &mut first);
         let joined = bank.blocks[0].follow_on(&first[0], 1e-4);

@@ -75,8 +75,14 @@ impl Conservative {
         self.normal.get_or_init(build).as_ref()
     }
 
-    /// The blocks of (p, p′) under dashpots, where they come from normal modes.
-    pub(crate) fn split(&self, system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -> Option<Spectral> {
+    /// The blocks of (p, p′) under dashpots, where they come from normal modes, in the `room` of others.
+    pub(crate) fn split(
+        &self,
+        system: &HybridSystem,
+        contacts: &[Contact],
+        damping: &[f64],
+        room: Spectral,
+    ) -> Option<Spectral> {
         if self.mass.order == 1 {
             // It is a block as it stands.
             return None;
@@ -89,7 +95,7 @@ impl Conservative {
             }
         }
         // Without any dashpot no energy is lost, to the bit: see `modes`.
-        if all.iter().all(|entry| *entry == 0.0) { None } else { damped::split(modes, &all) }
+        if all.iter().all(|entry| *entry == 0.0) { None } else { damped::split(modes, &all, room) }
     }
 }
 

@@ -45,7 +45,7 @@ const MISSED: f64 = 2e-14;
 
 /// Splits (e, e′) under the dashpots `damping`, row by row in normal coordinates of modal mass 1: V and W as
 /// [`crate::contact_state::modes::split`] has them, fastest blocks first.
-pub(crate) fn split(modes: &NormalModes, damping: &[f64]) -> Option<Spectral> {
+pub(crate) fn split(modes: &NormalModes, damping: &[f64], room: Spectral) -> Option<Spectral> {
     let problem = Problem::new(modes, damping);
     WORK.with_borrow_mut(|work| {
         work.make_room(modes.omega.len());
@@ -57,7 +57,7 @@ pub(crate) fn split(modes: &NormalModes, damping: &[f64]) -> Option<Spectral> {
         if matches!(independence, Independence::None) {
             return None;
         }
-        let mut spectral = problem.assemble(&work.found, &work.shapes);
+        let mut spectral = problem.assemble(&work.found, &work.shapes, room);
         if matches!(independence, Independence::Near) {
             correct(&mut spectral);
         }
@@ -247,15 +247,18 @@ impl<'a> Problem<'a> {
 
     widened! {
         /// Their blocks, with V and W.
-        fn assemble | assemble_wide (&self, found: &[Found], shapes: &[Complexes]) -> Spectral = assemble_by_registers
+        fn assemble | assemble_wide (&self, found: &[Found], shapes: &[Complexes], room: Spectral) -> Spectral = assemble_by_registers
     }
 
     #[inline(always)]
-    fn assemble_by_registers(&self, found: &[Found], shapes: &[Complexes]) -> Spectral {
+    fn assemble_by_registers(&self, found: &[Found], shapes: &[Complexes], room: Spectral) -> Spectral {
         let (n, count) = (self.modes.omega.len(), self.starts.len());
         let width = 2 * count;
-        let mut matrices = Vec::with_capacity(count);
-        let [mut from_blocks, mut to_blocks] = [vec![0.0; 2 * n * width], vec![0.0; 2 * n * width]];
+        let Spectral { mut from_blocks, mut to_blocks, mut matrices, .. } = room;
+        matrices.clear();
+        for numbers in [&mut from_blocks, &mut to_blocks] {
+            numbers.resize(2 * n * width, 0.0);
+        }
         for (group, (Found { lambda, size }, shape)) in found.iter().zip(shapes.chunks_exact(n)).enumerate() {
             let first = group * WIDTH;
             let lanes = WIDTH.min(count - first);
@@ -501,7 +504,7 @@ mod tests {
         /// By normal modes.
         fn split(&self) -> Option<Spectral> {
             let modes = NormalModes::new(&self.stiffness, &self.mass).expect("springs are positive");
-            split(&modes, &self.in_normal_coordinates(&modes))
+            split(&modes, &self.in_normal_coordinates(&modes), Spectral::default())
         }
 
         /// What W V misses of 1, and V B W of A, with places in units of their scale: (Ω p, p′).

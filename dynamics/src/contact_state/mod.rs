@@ -121,16 +121,20 @@ pub(crate) struct Modes {
 }
 
 impl Modes {
+    /// Of a contact state under these dashpots, in the `room` of one that is not needed any more.
     pub(crate) fn new(
         system: &HybridSystem,
         bare: Rc<Conservative>,
         contacts: &[Contact],
         damping: &[f64],
+        room: Option<Self>,
     ) -> Result<Self, EngineError> {
+        let (spectral, to_blocks, columns) =
+            room.map_or_else(Default::default, |room| (room.spectral, room.to_blocks, room.columns));
         let attached = bare.attached.clone();
         let order = system.mass.order + attached.len();
         let across = Across::all(system, contacts, damping, &attached);
-        let normal = bare.split(system, contacts, damping);
+        let normal = bare.split(system, contacts, damping, spectral);
         let mut modes = Self {
             contacts: contacts.to_vec(),
             damping: damping.to_vec(),
@@ -138,8 +142,8 @@ impl Modes {
             order,
             attached,
             accelerations: OnceCell::new(),
-            to_blocks: Superposition::default(),
-            columns: Superposition::default(),
+            to_blocks,
+            columns,
             is_normal: normal.is_some(),
             spectral: Spectral::default(),
             gravity: Rc::default(),
@@ -159,8 +163,9 @@ impl Modes {
                 modes::split(accelerations, &modes.bare.mass, stiffness.as_ref())?
             }
         };
-        modes.to_blocks = Superposition::new(modes.spectral.width(), &modes.spectral.to_blocks);
-        modes.columns = Superposition::transposed(2 * order, modes.spectral.width(), &modes.spectral.from_blocks);
+        let (spectral, width) = (&modes.spectral, modes.spectral.width());
+        modes.to_blocks = std::mem::take(&mut modes.to_blocks).of_rows(width, &spectral.to_blocks);
+        modes.columns = std::mem::take(&mut modes.columns).of_columns(2 * order, width, &spectral.from_blocks);
         let gravity = || Rc::new(modes.load(system, &modes.falls(system)));
         modes.gravity =
             modes.normal(system).map_or_else(gravity, |normal| Rc::clone(normal.gravity.get_or_init(gravity)));
@@ -199,8 +204,8 @@ impl Modes {
     pub(crate) fn resonant(&self, system: &HybridSystem, push: &[f64], omega: f64) -> Option<(Self, Steady)> {
         let (spectral, steady) = resonance::split(&self.spectral, self.order, push, omega)?;
         let mut modes = Self {
-            to_blocks: Superposition::new(spectral.width(), &spectral.to_blocks),
-            columns: Superposition::transposed(2 * self.order, spectral.width(), &spectral.from_blocks),
+            to_blocks: Superposition::default().of_rows(spectral.width(), &spectral.to_blocks),
+            columns: Superposition::default().of_columns(2 * self.order, spectral.width(), &spectral.from_blocks),
             spectral,
             ..self.clone()
         };

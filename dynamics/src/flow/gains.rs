@@ -281,7 +281,7 @@ mod tests {
             Phase { value: v0 * x + v1 * y, rate: r0 * x + r1 * y }
         };
         let mut panels = Panels::default();
-        panels.divide(&blocks, &Bank::new(&blocks), duration);
+        panels.divide(&blocks, &Bank::default().of(&blocks), duration);
         let shares: Vec<Phase> = row.weights.iter().enumerate().map(phase).collect();
         let sampled = panels.sums(&blocks, shares.iter().copied(), parabola(-0.01 + level * 0.002));
 

@@ -207,7 +207,7 @@ mod tests {
         let matrices =
             [[0.0, 1.0, -9e4, -3.0], [0.0, 1.0, -25.0, -10.0], [0.0, 1.0, -9.0, -40.0], [0.0, 1.0, 0.0, 0.0]];
         let blocks = matrices.map(Block::new);
-        let bank = Bank::new(&blocks);
+        let bank = Bank::default().of(&blocks);
         let shares = [0.3, -1.2, 0.7, 0.1].map(|x| Phase { value: x, rate: 40.0 * x * x });
         let loads = Parabola { p0: 0.2, p1: -1.0, p2: -4.9 };
         let mut panels = Panels::default();

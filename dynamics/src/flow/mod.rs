@@ -79,6 +79,22 @@ pub(crate) struct Flow {
     pub(crate) place: Cell<usize>,
 }
 
+/// The vectors of a flow that is not needed any more: half cycles put one flow in the place of another all the time.
+#[derive(Default)]
+pub(crate) struct Room {
+    blocks: Vec<Block>,
+    bank: Bank,
+    series: Series,
+    propagators: Vec<Propagator>,
+    rows: Rows,
+}
+
+impl From<Flow> for Room {
+    fn from(Flow { blocks, bank, series, propagators, rows, .. }: Flow) -> Self {
+        Self { blocks, bank, series, propagators, rows }
+    }
+}
+
 /// Room for so many numbers, whatever stands there.
 #[inline(always)]
 fn room(work: &mut Vec<f64>, count: usize) -> &mut [f64] {
@@ -92,11 +108,16 @@ impl Flow {
     /// Builds the flow of a contact state with the contact damping now in force.
     pub(crate) fn build(system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -> Result<Self, EngineError> {
         let bare = Rc::new(Conservative::new(system, contacts)?);
-        Self::driven(system, Rc::new(Modes::new(system, bare, contacts, damping)?), None)
+        Self::driven(system, Rc::new(Modes::new(system, bare, contacts, damping, None)?), None, Room::default())
     }
 
     /// The flow of a contact state whose modes are known, under the drive of `system`; `like` is one under other dampings.
-    pub(crate) fn driven(system: &HybridSystem, modes: Rc<Modes>, like: Option<&Self>) -> Result<Self, EngineError> {
+    pub(crate) fn driven(
+        system: &HybridSystem,
+        modes: Rc<Modes>,
+        like: Option<&Self>,
+        room: Room,
+    ) -> Result<Self, EngineError> {
         // No dashpot holds anything at rest.
         let is_known = |like: &&Self| system.drive.harmonic.is_none() && modes.is_normal && like.modes.is_normal;
         let (modes, harmonic, force) = if let Some(like) = like.filter(is_known) {
@@ -113,7 +134,8 @@ impl Flow {
             let force = Rc::new(modes.load(system, &push));
             (modes, harmonic, force)
         };
-        let mut blocks = modes.spectral.blocks.clone();
+        let Room { mut blocks, bank, series, propagators, rows } = room;
+        blocks.clone_from(&modes.spectral.blocks);
         let own = blocks.len();
         let turning = blocks.iter().filter(|block| block.oscillates());
         let highest_frequency = turning.map(|block| block.determinant.sqrt()).fold(0.0, f64::max);
@@ -123,13 +145,13 @@ impl Flow {
             return Err(EngineError::RateNotFinite);
         }
         let slowest = blocks[..own].iter().fold(f64::INFINITY, |least, block| block.radius.min(least));
-        let series = Series::new(&blocks);
+        let series = series.of(&blocks);
         let mut flow = Self {
             slowest,
-            bank: Bank::new(&blocks),
+            bank: bank.of(&blocks),
             steps: system.drive.half_cycles.is_none().then(|| Steps::new(series.pace)),
             series,
-            propagators: Propagator::of(&modes.spectral.matrices, &blocks),
+            propagators: Propagator::of(propagators, &modes.spectral.matrices, &blocks),
             drifts: modes.spectral.drifts(),
             is_resonant,
             blocks,
@@ -145,7 +167,7 @@ impl Flow {
             dissipation: OnceCell::new(),
             place: Cell::new(0),
         };
-        flow.rows = Rows::new(system, &flow.modes, &flow.blocks, |row| flow.row(row));
+        flow.rows = rows.of(system, &flow.modes, &flow.blocks, |row| flow.row(row));
         Ok(flow)
     }
 

@@ -211,7 +211,7 @@ mod tests {
         let block = |(a, w): (f64, f64)| Block::new([-a, w, -w, -a]);
         let others = [Block::new([-70.0, 0.0, 0.0, -70.0]), Block::harmonic(40.0)];
         let blocks: Vec<Block> = turning.into_iter().map(block).chain(others).collect();
-        let bank = Bank::new(&blocks);
+        let bank = Bank::default().of(&blocks);
         let share = |k: usize| {
             let value = 0.3 - 0.1 * k as f64;
             Phase { value, rate: if blocks[k].is_single() { -70.0 * value } else { 7.0 * (k as f64 - 2.6) } }

@@ -72,15 +72,20 @@ pub(crate) struct Bounds {
 }
 
 impl Series {
-    pub(crate) fn new(blocks: &[Block]) -> Self {
+    /// Of these blocks, in the room of this one.
+    pub(crate) fn of(self, blocks: &[Block]) -> Self {
+        let Self { mut fastest, mut terms, mut radii, .. } = self;
         let most = |blocks: &[Block]| blocks.iter().fold(0.0_f64, |most, block| most.max(block.radius));
-        let mut fastest: Vec<f64> = blocks.chunks(WIDTH).map(most).collect();
+        fastest.clear();
+        fastest.extend(blocks.chunks(WIDTH).map(most));
         for k in (1..fastest.len()).rev() {
             fastest[k - 1] = fastest[k - 1].max(fastest[k]);
         }
         let pace = fastest.first().copied().filter(|fastest| *fastest > 0.0).unwrap_or(1.0);
-        let radii = blocks.chunks(WIDTH).map(|blocks| Radii::new(blocks, pace)).collect();
-        let terms = blocks.iter().map(|block| Terms::new(block, pace)).collect();
+        radii.clear();
+        radii.extend(blocks.chunks(WIDTH).map(|blocks| Radii::new(blocks, pace)));
+        terms.clear();
+        terms.extend(blocks.iter().map(|block| Terms::new(block, pace)));
         Self { pace, unit: 1.0 / pace, fastest, terms, radii }
     }
 

@@ -3,7 +3,7 @@
 //! A row r·p of the coordinates is a share of every block, and so are its second derivative and the force of a spring and a
 //! dashpot along it. What a contact state needs is known when its flow is built, so that a segment evaluates just that.
 
-use std::cell::OnceCell;
+use std::cell::RefCell;
 
 use crate::arithmetic::four::Four;
 use crate::arithmetic::lanes::WIDTH;
@@ -68,7 +68,7 @@ pub(crate) struct Rows {
     /// Weights of the watched rows, several blocks together.
     weights: Vec<[Four; 4]>,
     /// Bounds of the second derivatives of their shares, by |x| + |y|; worked out where many guards ask for them.
-    bends: OnceCell<Vec<Four>>,
+    bends: RefCell<Vec<Four>>,
     /// Observed displacements.
     pub(crate) observed: Vec<usize>,
     /// The base, watched where half cycles follow its acceleration.
@@ -217,9 +217,18 @@ fn across(
 }
 
 impl Rows {
-    /// What a contact state needs; `blocks` are its own and the drive's, `signal` gives r·p of a row r.
-    pub(crate) fn new(system: &HybridSystem, modes: &Modes, blocks: &[Block], signal: impl Fn(&[f64]) -> Row) -> Self {
-        let mut all = Self::default();
+    /// What a contact state needs, in the room of these; `blocks` are its own and the drive's, `signal` gives r·p of a row r.
+    pub(crate) fn of(
+        self,
+        system: &HybridSystem,
+        modes: &Modes,
+        blocks: &[Block],
+        signal: impl Fn(&[f64]) -> Row,
+    ) -> Self {
+        let mut all = Self { rows: self.rows, weights: self.weights, bends: self.bends, ..Self::default() };
+        all.rows.clear();
+        all.weights.clear();
+        all.bends.get_mut().clear();
         all.rows.reserve(2 + 3 * system.particles.len() + system.observed_rows.len());
         if let Some(row) = system.base_row() {
             all.base = all.place(signal(row));
@@ -296,7 +305,7 @@ impl Rows {
     /// Numbers that it keeps.
     pub(crate) fn size(&self) -> usize {
         4 * self.rows.len() * self.rows.first().map_or(0, |row| row.weights.len())
-            + WIDTH * (4 * self.weights.len() + self.bends.get().map_or(0, Vec::len))
+            + WIDTH * (4 * self.weights.len() + self.bends.borrow().len())
     }
 
     /// Where a row stands.
@@ -359,7 +368,10 @@ impl Rows {
     /// Adds bounds on the second derivatives of the watched rows, without what constant loads add; not of blocks near critical damping.
     #[inline(always)]
     pub(crate) fn bound(&self, bank: &Bank, signals: &Signals, bends: &mut Vec<f64>) {
-        let all = self.bends.get_or_init(|| self.most_bends(bank));
+        let mut all = self.bends.borrow_mut();
+        if all.is_empty() {
+            self.most_bends(bank, &mut all);
+        }
         for most in all.chunks_exact(signals.registers.max(1)) {
             let mut bend = Four::ZERO;
             for (most, [x, y]) in most.iter().zip(&signals.coordinates) {
@@ -370,10 +382,11 @@ impl Rows {
     }
 
     #[cold]
-    fn most_bends(&self, bank: &Bank) -> Vec<Four> {
-        let registers = bank.blocks.len().max(1);
-        let rows = self.weights.chunks_exact(registers);
-        rows.flat_map(|row| bank.blocks.iter().zip(row).map(|(blocks, weights)| bend(blocks, weights))).collect()
+    fn most_bends(&self, bank: &Bank, bends: &mut Vec<Four>) {
+        bends.reserve_exact(self.weights.len());
+        for row in self.weights.chunks_exact(bank.blocks.len().max(1)) {
+            bends.extend(bank.blocks.iter().zip(row).map(|(blocks, weights)| bend(blocks, weights)));
+        }
     }
 
     /// Evaluates any row.
@@ -449,7 +462,7 @@ mod tests {
             [[0.0, 1.0, -9e4, -3.0], [0.0, 1.0, -25.0, -4.0], [-5.0, 140.0, -150.0, -40.0], [0.0, 1.0, -9.0, -40.0]];
         let weights = [[1.0, 0.0, 0.0, 1.0], [0.3, -0.2, -31.5, 34.0], [0.01, 0.02, 0.34, -0.17]];
         let blocks = matrices.map(Block::new);
-        let bank = Bank::new(&blocks);
+        let bank = Bank::default().of(&blocks);
         for (lane, block) in blocks.into_iter().enumerate() {
             for weights in weights {
                 let most = bend(&bank.blocks[0], &weights.map(Four::all)).at(lane);

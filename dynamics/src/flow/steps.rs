@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn three_entries_make_the_kernels_of_any_whole_step() {
         let each = [[0.0, 1.0, -1000.0, -3.0], [0.0, 1.0, -9.0, -40.0], [0.0, 1.0, 0.0, 0.0]].map(Block::new);
-        let bank = Bank::new(&each);
+        let bank = Bank::default().of(&each);
         let steps = Steps::new(40.0);
         for t in [0.0, 0.02, 0.4, 3.0, 20.0] {
             let (whole, before) = steps.before(t).expect("the table reaches as far");

@@ -93,7 +93,7 @@ impl Grid {
             }
             constant.push(motion);
         }
-        let free = Superposition::new(constant.as_flattened().len(), entries.as_flattened());
+        let free = Superposition::default().of_rows(constant.as_flattened().len(), entries.as_flattened());
         Self { times, free, constant, drive, rest: Parabola { p0: rest, ..Parabola::default() } }
     }
 

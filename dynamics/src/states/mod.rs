@@ -16,7 +16,7 @@ use crate::budget;
 use crate::contact_state::conservative::Conservative;
 use crate::contact_state::{Modes, dampings, feels_half_cycles};
 use crate::error::EngineError;
-use crate::flow::Flow;
+use crate::flow::{Flow, Room};
 use crate::system::{Contact, HybridSystem, Particle};
 use ground::Ground;
 
@@ -147,7 +147,7 @@ impl States {
         let alike: Vec<Contact> = alike.collect();
         let damping = dampings(system, &alike, equivalent);
         let fits = |flow: &Flow| flow.modes.damping == damping;
-        let flow = visit(&self.0.flows, &alike, fits, || self.build(system, &alike, &damping))?;
+        let flow = visit(&self.0.flows, &alike, fits, |old| self.build(system, &alike, &damping, old))?;
         // The gap, too, enters where a particle is at both faces.
         if let Some(code) = code(contacts).filter(|_| !contacts.iter().any(|contact| contact.is_between())) {
             let equivalent = equivalent.filter(|_| feels_half_cycles(system, contacts));
@@ -157,48 +157,61 @@ impl States {
     }
 
     #[cold]
-    fn build(&self, system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -> Result<Flow, EngineError> {
+    fn build(
+        &self,
+        system: &HybridSystem,
+        contacts: &[Contact],
+        damping: &[f64],
+        old: Option<Flow>,
+    ) -> Result<Flow, EngineError> {
         let order = system.mass.order + contacts.len();
         // About what the Schur form of a matrix of twice the order takes.
         if budget::spend_ahead(u32::try_from(order.saturating_pow(3) / 8).unwrap_or(u32::MAX)) {
             return Err(budget::overrun().into());
         }
         self.0.grown.set(true);
+        let is_one_more = old.is_none();
+        // Nobody but those that are known holds its modes any more.
+        let room = old.map_or_else(Room::default, Room::from);
         let modes = visit(
             &self.0.undriven.modes,
             contacts,
             |modes| modes.damping == damping,
-            || {
-                let build = || Conservative::new(system, contacts);
+            |old| {
+                let build = |_| Conservative::new(system, contacts);
                 let bare = visit(&self.0.undriven.bare, contacts, |_| true, build)?;
-                Modes::new(system, bare, contacts, damping)
+                Modes::new(system, bare, contacts, damping, old)
             },
         )?;
         let like = self.0.flows.borrow().get(contacts).and_then(|known| known.last().cloned());
-        let flow = Flow::driven(system, modes, like.as_deref())?;
-        self.0.make_room(flow.size());
+        let flow = Flow::driven(system, modes, like.as_deref(), room)?;
+        if is_one_more {
+            self.0.make_room(flow.size());
+        }
         Ok(flow)
     }
 }
 
+/// One that is known, or a new one; the oldest of many gives its room to that, unless somebody holds it.
 #[inline]
 fn visit<T>(
     known: &ByContact<T>,
     contacts: &[Contact],
     fits: impl Fn(&T) -> bool,
-    build: impl FnOnce() -> Result<T, EngineError>,
+    build: impl FnOnce(Option<T>) -> Result<T, EngineError>,
 ) -> Result<Rc<T>, EngineError> {
     let old = known.borrow().get(contacts).and_then(|states| states.iter().find(|state| fits(state)).cloned());
     if let Some(old) = old {
         return Ok(old);
     }
-    let new = Rc::new(build()?);
+    let full = |states: &&mut Vec<Rc<T>>| states.len() >= MOST_DAMPINGS;
+    let oldest = known.borrow_mut().get_mut(contacts).filter(full).map(|states| states.remove(0));
+    let new = Rc::new(build(oldest.and_then(Rc::into_inner))?);
     let mut known = known.borrow_mut();
-    let states = known.entry(contacts.to_vec()).or_default();
-    if states.len() >= MOST_DAMPINGS {
-        states.clear();
+    match known.get_mut(contacts) {
+        Some(states) => states.push(Rc::clone(&new)),
+        None => drop(known.insert(contacts.to_vec(), vec![Rc::clone(&new)])),
     }
-    states.push(Rc::clone(&new));
     Ok(new)
 }
 
