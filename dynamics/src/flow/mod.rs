@@ -25,6 +25,7 @@ use crate::arithmetic::four::Four;
 use crate::arithmetic::lanes::WIDTH;
 use crate::arithmetic::matrix::dot;
 use crate::arithmetic::wide::widened;
+use crate::contact::Side;
 use crate::contact_state::Modes;
 use crate::contact_state::bank::{Bank, Kernels, Propagator};
 use crate::contact_state::block::Block;
@@ -37,7 +38,7 @@ use crate::flow::parabola::Parabola;
 use crate::flow::series::Series;
 use crate::flow::signals::{Row, Rows};
 use crate::flow::steps::Steps;
-use crate::system::{Contact, DrivePhase, HybridSystem};
+use crate::system::{Contact, DrivePhase, HybridSystem, Particle};
 
 /// One contact state, ready to be propagated.
 pub(crate) struct Flow {
@@ -71,6 +72,8 @@ pub(crate) struct Flow {
     harmonic: Option<Steady>,
     /// Signals that are watched or measured.
     pub(crate) rows: Rows,
+    /// Those of the faces on both sides of each enclosure; worked out when they are asked for.
+    faces: OnceCell<Vec<[Row; 2]>>,
     /// Closed forms of its integrals, where they keep their digits; worked out when they are asked for.
     closed: OnceCell<Option<Closed>>,
     velocity_squares: OnceCell<Vec<VelocitySquare>>,
@@ -162,6 +165,7 @@ impl Flow {
             force,
             harmonic,
             rows: Rows::default(),
+            faces: OnceCell::new(),
             closed: OnceCell::new(),
             velocity_squares: OnceCell::new(),
             dissipation: OnceCell::new(),
@@ -175,6 +179,7 @@ impl Flow {
     pub(crate) fn size(&self) -> usize {
         self.modes.size()
             + self.rows.size()
+            + self.faces.get().map_or(0, |faces| 8 * faces.len() * self.blocks.len())
             + self.steps.as_ref().map_or(0, Steps::size)
             + self.closed.get().and_then(Option::as_ref).map_or(0, Closed::size)
             + self.velocity_squares.get().map_or(0, |rows| rows.iter().map(VelocitySquare::size).sum())
@@ -198,6 +203,13 @@ impl Flow {
     pub(crate) fn velocity_squares(&self, closed: &Closed) -> &[VelocitySquare] {
         let rows = || self.rows.observed.iter().map(|&row| self.rows.row(row)).collect::<Vec<_>>();
         self.velocity_squares.get_or_init(|| closed.velocity_squares(&rows()))
+    }
+
+    /// Row of the face on one side of particle j's enclosure.
+    pub(crate) fn face(&self, system: &HybridSystem, j: usize, side: Side) -> &Row {
+        let rows = |particle: &Particle| [Side::Floor, Side::Ceiling].map(|side| self.row(&side.face(particle).row));
+        let [floor, ceiling] = &self.faces.get_or_init(|| system.particles.iter().map(rows).collect())[j];
+        side.of(floor, ceiling)
     }
 
     /// The signal r·p; a row may end where only zeros follow.

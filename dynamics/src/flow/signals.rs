@@ -8,7 +8,6 @@ use std::cell::RefCell;
 use crate::arithmetic::four::Four;
 use crate::arithmetic::lanes::WIDTH;
 use crate::arithmetic::wide::widened;
-use crate::contact::Side;
 use crate::contact_state::bank::{Bank, Blocks, Phases, apart};
 use crate::contact_state::block::{Block, Kernel, Phase};
 use crate::contact_state::{Modes, way_across};
@@ -25,15 +24,6 @@ pub(crate) struct Row {
     pub(crate) force: Parabola,
 }
 
-/// Rows of the faces of one enclosure; not all of them are watched.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct FaceRows {
-    pub(crate) floor: usize,
-    pub(crate) ceiling: usize,
-    /// Row of the particle's own coordinate w while it presses into a face.
-    pub(crate) compression: Option<usize>,
-}
-
 /// Rows that a particle's guards look at.
 ///
 /// | contact | first | second |
@@ -48,6 +38,8 @@ pub(crate) struct FaceRows {
 pub(crate) struct GuardRows {
     pub(crate) first: usize,
     pub(crate) second: usize,
+    /// Row of the particle's own coordinate w while it presses into a face.
+    pub(crate) compression: Option<usize>,
     /// How much further away the face across is, where it moves by itself and the particle is at the other one; of a released
     /// particle that face itself, as far as it does not drift. And the force of its spring and dashpot, where it touches.
     pub(crate) across: Option<AcrossRows>,
@@ -78,7 +70,6 @@ pub(crate) struct Rows {
     /// How it depends on each coordinate, in absolute values: coordinates that weights have deflected carry rounding even at rest.
     pub(crate) bend_of_places: Vec<f64>,
     pub(crate) guards: Vec<GuardRows>,
-    pub(crate) faces: Vec<FaceRows>,
 }
 
 /// Watched rows at the start of a segment.
@@ -188,6 +179,11 @@ impl Row {
         })
     }
 
+    /// Those shares, and what constant loads add.
+    pub(crate) fn evaluate(&self, c: &[f64], force: f64) -> (Vec<Phase>, Parabola) {
+        (self.phases(c).collect(), self.rest(force))
+    }
+
     /// What constant loads add, under this force.
     #[inline(always)]
     pub(crate) fn rest(&self, force: f64) -> Parabola {
@@ -282,7 +278,8 @@ impl Rows {
             };
             let across = particle.has_walls().then(|| across(modes, blocks, j, particle, &signal)).flatten();
             let across = across.map(|[way, force]| AcrossRows { way: all.place(way), force: all.place(force) });
-            all.guards.push(GuardRows { first, second, across });
+            let compression = modes.slot(j).map(|_| first);
+            all.guards.push(GuardRows { first, second, compression, across });
         }
         all.watched = all.rows.len();
         all.weights.reserve_exact(all.watched * blocks.len().div_ceil(WIDTH));
@@ -290,15 +287,6 @@ impl Rows {
             all.weights.extend(row.weights.chunks(WIDTH).map(together));
         }
         all.observed = system.observed_rows.iter().map(|row| all.place(signal(row))).collect();
-        for (j, particle) in system.particles.iter().enumerate() {
-            let GuardRows { first, second, .. } = all.guards[j];
-            let (floor, ceiling) = if modes.contacts[j] == Contact::Flight && !drifts {
-                (first, second)
-            } else {
-                all.place_faces(particle, |face| signal(&face.row))
-            };
-            all.faces.push(FaceRows { floor, ceiling, compression: modes.slot(j).map(|_| first) });
-        }
         all
     }
 
@@ -326,11 +314,6 @@ impl Rows {
     /// A row, watched or not.
     pub(crate) fn row(&self, index: usize) -> &Row {
         &self.rows[index]
-    }
-
-    /// Row of the face on one side of particle j's enclosure.
-    pub(crate) fn face(&self, j: usize, side: Side) -> usize {
-        side.of(self.faces[j].floor, self.faces[j].ceiling)
     }
 
     widened! {
@@ -389,11 +372,6 @@ impl Rows {
         }
     }
 
-    /// Evaluates any row.
-    pub(crate) fn evaluate(&self, row: usize, c: &[f64], force: f64) -> (Vec<Phase>, Parabola) {
-        let row = &self.rows[row];
-        (row.phases(c).collect(), row.rest(force))
-    }
 }
 
 impl Signals {

@@ -214,7 +214,7 @@ impl<E: Effects> March<'_, E> {
         let (flow, particle, contact) = (&self.flow, &self.system.particles[j], self.contacts[j]);
         let other = side.opposite();
         let row = if contact.side() == other {
-            flow.rows.faces[j].compression
+            flow.rows.guards[j].compression
         } else {
             flow.rows.guards[j].across.map(|rows| rows.way)
         };
@@ -223,7 +223,7 @@ impl<E: Effects> March<'_, E> {
         else {
             return [0.0; 2];
         };
-        let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level);
+        let (phases, rest) = flow.rows.row(row).evaluate(&self.c, self.level);
         let mut bend = 2.0 * rest.p2;
         for (block, phase) in flow.blocks.iter().zip(&phases) {
             bend += block.acceleration(*phase).value;

@@ -402,8 +402,7 @@ impl<E: Effects> March<'_, E> {
         let drive = self.drive_phase(self.time);
         self.enter_flow(drive);
         let flow = &self.flow;
-        let row = flow.rows.face(j, side);
-        let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level);
+        let (phases, rest) = flow.face(self.system, j, side).evaluate(&self.c, self.level);
         let grip = Grip::of(self.system, flow, &phases, rest, j, side, on_stop);
         if self.touches_across(j, side) { grip.against(self.push_across(j, side)) } else { grip }
     }

@@ -4,7 +4,7 @@ use super::March;
 use super::effects::Effects;
 use crate::arithmetic::lanes::WIDTH;
 use crate::contact::Side;
-use crate::flow::signals;
+use crate::flow::signals::{self, Row};
 use crate::options::trace::TraceRequest;
 use crate::response::sample::{Sample, SampledParticle};
 use crate::search::guards;
@@ -28,17 +28,17 @@ impl<E: Effects> March<'_, E> {
             }
             let kernels = flow.kernels(t);
             flow.advance_all(&kernels, &self.c, flow.drive_after(drive, t), &mut c);
-            let anywhere = |row: usize| {
-                let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level);
+            let anywhere = |row: &Row| {
+                let (phases, rest) = row.evaluate(&self.c, self.level);
                 signals::motion(&flow.blocks, &phases, rest, |k| kernels[k / WIDTH].at(k % WIDTH), t)
             };
-            let [displacement, velocity, acceleration, _] = anywhere(flow.rows.observed[0]);
+            let [displacement, velocity, acceleration, _] = anywhere(flow.rows.row(flow.rows.observed[0]));
             let sampled = |(j, particle): (usize, &Particle)| {
                 let contact = self.contacts[j];
-                let faces = [Side::Floor, Side::Ceiling].map(|side| anywhere(flow.rows.face(j, side))[0]);
-                let gap = match (contact.face(particle), flow.rows.faces[j].compression) {
+                let faces = [Side::Floor, Side::Ceiling].map(|side| anywhere(flow.face(self.system, j, side))[0]);
+                let gap = match (contact.face(particle), flow.rows.guards[j].compression) {
                     (None, _) => guards::fly(flow, j, self.paths[j], &self.signals, self.particles[j], &c, t).gap,
-                    (Some(_), Some(compression)) => anywhere(compression)[0],
+                    (Some(_), Some(compression)) => anywhere(flow.rows.row(compression))[0],
                     (Some(_), None) => self.particles[j].gap,
                 };
                 SampledParticle::new(particle, contact, faces, gap)

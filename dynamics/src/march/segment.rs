@@ -247,7 +247,7 @@ impl<E: Effects> March<'_, E> {
         let flow = &self.flow;
         let short = flow.turns_below(guards::SHORT, length);
         for (i, &j) in flow.modes.attached.iter().enumerate() {
-            self.particles[j] = match flow.rows.faces[j].compression {
+            self.particles[j] = match flow.rows.guards[j].compression {
                 Some(_) if short => {
                     let own = self.signals.of(flow.rows.guards[j].first);
                     guards::creep(flow, 2.0 * own.rest.p2, 1.0, own, self.particles[j], length)
