@@ -5,8 +5,9 @@
 //!
 //! r(λ) = xᵀ (λ² + λ C + Ω²) x = 0,   r′ = xᵀ (2 λ + C) x = (σ + r)/λ,   σ = λ² xᵀx − xᵀΩ²x,
 //!
-//! which Newton's method solves in three steps or four, several modes side by side. It starts from the mode's own share of the damping,
-//! so that nothing depends on what was solved before; a mode that this overdamps has two starts, both real. The matrix of (Ω q, q′) is
+//! which Newton's method solves in two steps or three, several modes side by side. It starts from the mode's own share of the damping,
+//! so that nothing depends on what was solved before, and from what couples other modes with that one alone, which costs next to nothing;
+//! a mode that its own share overdamps has two starts, both real. The matrix of (Ω q, q′) is
 //! symmetric but for signs, so that each column is its own row:
 //!
 //! v = (Ω x, λ x),   w = (−Ω x, λ x)/σ.
@@ -25,14 +26,14 @@ use crate::arithmetic::wide::widened;
 use crate::contact_state::spectral::{Spectral, invert_again};
 use crate::contact_state::undamped::NormalModes;
 
-/// Newton's steps; four are usual.
+/// Newton's steps; three are usual.
 const MOST_STEPS: usize = 12;
 /// A step below this share of λ leaves an error of its square; the next one shows it.
 const LAST_STEP: f64 = 1e-8;
 const CONVERGED: f64 = 1e-13;
 /// And below this it is rounding, whatever was before.
 const NOTHING: f64 = 1e-15;
-/// Steps before those, in which all other modes are taken for undamped by each other.
+/// Cheaper steps before those, as if no two other modes damped each other: of a few dashpots they leave 1e-5 or less.
 const NEARER: usize = 2;
 /// σ below this share of its terms is that of two eigenvalues about to meet: a mode near critical damping. By a block for each, integrals
 /// of squares would be differences of terms that grow as 1/σ².
@@ -44,7 +45,7 @@ const DEPENDENT: f64 = 1e-8;
 const MISSED: f64 = 2e-14;
 
 /// Splits (e, e′) under the dashpots `damping`, row by row in normal coordinates of modal mass 1: V and W as
-/// [`crate::contact_state::modes::split`] has them, fastest blocks first.
+/// [`crate::contact_state::modes::split`] has them, in the `room` of others; fastest blocks first, as far as starts can tell.
 pub(crate) fn split(modes: &NormalModes, damping: &[f64], room: Spectral) -> Option<Spectral> {
     let problem = Problem::new(modes, damping);
     WORK.with_borrow_mut(|work| {
@@ -145,18 +146,21 @@ impl<'a> Problem<'a> {
     fn solve_by_registers(&self, first: usize, work: &mut Work) -> Option<Found> {
         let (n, omega) = (self.modes.omega.len(), &self.modes.omega);
         let starts = self.side_by_side(first).map(|start| self.starts[start]);
-        let own = starts.map(|start| start.mode);
-        // Each mode's own coordinate is the last of its equation.
-        let place = |lane: usize, i: usize| if i + 1 == n { own[lane] } else { i + usize::from(i >= own[lane]) };
-        work.places.clear();
-        work.places.extend((0..n).map(|i| std::array::from_fn(|lane| place(lane, i))));
-        for (i, row) in work.damping.chunks_exact_mut(n).enumerate() {
-            let own = work.places[i];
-            work.squares[i] = Four::new(own.map(|place| omega[place] * omega[place]));
-            let from = own.map(|place| &self.damping[place * n..][..n]);
-            for (entry, places) in row[..=i].iter_mut().zip(&work.places) {
-                *entry = Four::new(std::array::from_fn(|lane| from[lane][places[lane]]));
+        work.own = starts.map(|start| start.mode);
+        for (i, (row, entries)) in work.damping.chunks_exact_mut(n).zip(self.damping.chunks_exact(n)).enumerate() {
+            row[..=i].iter_mut().zip(entries).for_each(|(to, entry)| *to = Four::all(*entry));
+            work.squares[i] = Four::all(omega[i] * omega[i]);
+        }
+        // Each mode's own coordinate is the last of its equation, and the last one stands in its place.
+        for (lane, own) in work.own.into_iter().enumerate() {
+            let (last, before) = (&self.damping[(n - 1) * n..], &self.damping[own * n..]);
+            for i in 0..n - 1 {
+                work.damping[own.max(i) * n + own.min(i)].set(lane, last[if i == own { n - 1 } else { i }]);
+                work.damping[(n - 1) * n + i].set(lane, before[if i == own { n - 1 } else { i }]);
             }
+            work.damping[n * n - 1].set(lane, before[own]);
+            work.squares[own].set(lane, omega[n - 1] * omega[n - 1]);
+            work.squares[n - 1].set(lane, omega[own] * omega[own]);
         }
         let mut lambda =
             Complexes { re: Four::new(starts.map(|start| start.re)), im: Four::new(starts.map(|start| start.im)) };
@@ -165,7 +169,7 @@ impl<'a> Problem<'a> {
         }
         let mut is_last = false;
         for _ in 0..MOST_STEPS {
-            // With a few modes the compiler unrolls every loop over them.
+            // With a few modes the compiler unrolls loops over them.
             let step = match n {
                 5 => newton::<5>(lambda, work),
                 6 => newton::<6>(lambda, work),
@@ -196,8 +200,10 @@ impl<'a> Problem<'a> {
         let n = self.modes.omega.len();
         let (mut most, mut worst) = (Four::ZERO, Four::ZERO);
         let larger = |a: f64, b: f64| if a < b || b.is_nan() { b } else { a };
+        let [dependent, missed, rounding] = [DEPENDENT, MISSED, ROUNDING].map(|x| (x * x) * (x * x));
         for (group, (Found { lambda, size }, shape)) in found.iter().zip(shapes.chunks_exact(n)).enumerate() {
             let own = self.side_by_side(group * WIDTH);
+            let inverse = size.square().map(|square| 1.0 / square);
             // w v of one mode and another is v w of the other and the one.
             for other in group * WIDTH..self.starts.len() {
                 let (of_other, lane) = (other / WIDTH, other % WIDTH);
@@ -219,7 +225,7 @@ impl<'a> Problem<'a> {
                 let not_itself = Four::new(own.map(|own| if own == other { 0.0 } else { 1.0 }));
                 // A real mode is its own mirror image.
                 let not_mirrored = if self.starts[other].is_real() { not_itself } else { Four::all(1.0) };
-                let scale = (size.square() * others.size.all(lane).square()).map(|scale| 1.0 / scale);
+                let scale = inverse * (1.0 / others.size.all(lane).square().at(0));
                 let pairs = [
                     (next, plain(sums), plain(stiff), not_itself),
                     (mirrored, conjugate(sums), conjugate(stiff), not_mirrored),
@@ -228,14 +234,17 @@ impl<'a> Problem<'a> {
                     // |w v|⁴, and what it makes A V = V B miss, to the same power.
                     let shared = lambda.times(next).times(sum).minus(stiff).square() * counts;
                     let fourth = shared * shared * scale;
-                    let apart = lambda.minus(next).square() * (lambda.square() + next.square()).map(|size| 1.0 / size);
                     most = most.zip(fourth, larger);
+                    // What it is multiplied by is below four: nothing is missed.
+                    if (fourth * 4.0).array().iter().all(|fourth| *fourth < missed) {
+                        continue;
+                    }
+                    let apart = lambda.minus(next).square() * (lambda.square() + next.square()).map(|size| 1.0 / size);
                     worst = worst.zip(fourth * apart * apart, larger);
                 }
             }
         }
         let [most, worst] = [most, worst].map(|fourth| fourth.largest());
-        let [dependent, missed, rounding] = [DEPENDENT, MISSED, ROUNDING].map(|x| (x * x) * (x * x));
         if !(most < dependent && worst < missed) {
             Independence::None
         } else if most < rounding {
@@ -297,14 +306,14 @@ impl<'a> Problem<'a> {
 /// normal coordinates.
 #[inline(always)]
 fn found(lambda: Complexes, work: &mut Work) -> Option<Found> {
-    let Work { places, squares, x, shapes, .. } = work;
+    let Work { own, squares, x, shapes, .. } = work;
     let first = shapes.len();
-    shapes.resize(first + x.len(), Complexes::ZERO);
-    for (x, places) in x.iter().zip(places) {
-        for (lane, place) in places.iter().enumerate() {
-            let to = &mut shapes[first + *place];
-            to.re.set(lane, x.re.at(lane));
-            to.im.set(lane, x.im.at(lane));
+    shapes.extend_from_slice(x);
+    let (last, shape) = (x.len() - 1, &mut shapes[first..]);
+    for (lane, own) in own.iter().enumerate() {
+        for (to, from) in [(last, *own), (*own, last)] {
+            shape[to].re.set(lane, x[from].re.at(lane));
+            shape[to].im.set(lane, x[from].im.at(lane));
         }
     }
     let [sum, stiff] = norms(x, squares);
@@ -331,9 +340,9 @@ const ONE: Complexes = Complexes { re: Four::new([1.0; WIDTH]), im: Four::ZERO }
 /// Room to work in, of one split after another.
 #[derive(Default)]
 struct Work {
-    /// Which normal coordinates stand at each place of the equation, mode by mode.
-    places: Vec<[usize; WIDTH]>,
-    /// Ω² there.
+    /// Modes whose equations are at hand.
+    own: [usize; WIDTH],
+    /// Ω², in the order of their equations.
     squares: Vec<Four>,
     /// C, row by row up to the diagonal.
     damping: Vec<Four>,
@@ -401,7 +410,7 @@ fn newton<const N: usize>(lambda: Complexes, work: &mut Work) -> Complexes {
     step(lambda, r, norms(x, squares))
 }
 
-/// The same where only the last row of C has anything beside its diagonal.
+/// The same step where only the last row of C has anything beside its diagonal.
 #[inline(always)]
 fn nearer(lambda: Complexes, work: &Work) -> Complexes {
     let (squares, n) = (&work.squares, work.squares.len());

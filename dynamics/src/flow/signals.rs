@@ -221,10 +221,12 @@ impl Rows {
         blocks: &[Block],
         signal: impl Fn(&[f64]) -> Row,
     ) -> Self {
-        let mut all = Self { rows: self.rows, weights: self.weights, bends: self.bends, ..Self::default() };
-        all.rows.clear();
-        all.weights.clear();
-        all.bends.get_mut().clear();
+        let Self { mut rows, mut weights, mut bends, mut guards, .. } = self;
+        rows.clear();
+        weights.clear();
+        guards.clear();
+        bends.get_mut().clear();
+        let mut all = Self { rows, weights, bends, guards, ..Self::default() };
         all.rows.reserve(2 + 3 * system.particles.len() + system.observed_rows.len());
         if let Some(row) = system.base_row() {
             all.base = all.place(signal(row));
@@ -371,7 +373,6 @@ impl Rows {
             bends.extend(bank.blocks.iter().zip(row).map(|(blocks, weights)| bend(blocks, weights)));
         }
     }
-
 }
 
 impl Signals {
