@@ -43,10 +43,11 @@ impl Superposition {
     pub(crate) fn of_columns(self, length: usize, columns: usize, entries: &[f64]) -> Self {
         let mut all = self.zeros(length, columns);
         for strip in strips(all.registers) {
-            let rows = &mut all.entries[strip.start * columns..strip.end * columns];
-            for i in strip.start * WIDTH..length.min(strip.end * WIDTH) {
-                let to = rows.iter_mut().skip(i / WIDTH - strip.start).step_by(strip.len());
-                to.zip(&entries[i * columns..][..columns]).for_each(|(to, from)| to[i % WIDTH] = *from);
+            let rows = all.entries[strip.start * columns..strip.end * columns].chunks_exact_mut(strip.len());
+            let from = &entries[strip.start * WIDTH * columns..length.min(strip.end * WIDTH) * columns];
+            for (k, to) in rows.enumerate() {
+                let column = from.chunks_exact(columns).map(|row| row[k]);
+                to.as_flattened_mut().iter_mut().zip(column).for_each(|(to, from)| *to = from);
             }
         }
         all

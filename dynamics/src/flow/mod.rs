@@ -212,8 +212,13 @@ impl Flow {
         side.of(floor, ceiling)
     }
 
-    /// The signal r·p; a row may end where only zeros follow.
-    pub(crate) fn row(&self, row: &[f64]) -> Row {
+    widened! {
+        /// The signal r·p; a row may end where only zeros follow.
+        pub(crate) fn row | row_wide (&self, row: &[f64]) -> Row = row_by_registers
+    }
+
+    #[inline(always)]
+    fn row_by_registers(&self, row: &[f64]) -> Row {
         let size = self.modes.spectral.width();
         // By values and by rates: r·V, column by column of V.
         let mut weights = Vec::with_capacity(self.blocks.len());
