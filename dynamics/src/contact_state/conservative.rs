@@ -35,6 +35,8 @@ pub(crate) struct Normal {
     damping: Vec<f64>,
     /// What the modes compress each attached particle's face by.
     compressions: Vec<Vec<f64>>,
+    /// The damping by dashpots of 1 N s/m at all of them: half cycles set all at once.
+    alike: Vec<f64>,
     /// Answer to gravity, once it is known.
     pub(crate) gravity: OnceCell<Rc<Load>>,
 }
@@ -69,8 +71,10 @@ impl Conservative {
             let damping = damping.map(|(i, j)| if i < j { entry(j, i) } else { entry(i, j) }).collect();
             let each = || modes.shapes.iter().zip(&modes.omega);
             let compression = |place: usize| each().map(|(shape, omega)| omega * shape[place]).collect();
-            let compressions = (n..order).map(compression).collect();
-            Some(Normal { modes, damping, compressions, gravity: OnceCell::new() })
+            let compressions: Vec<Vec<f64>> = (n..order).map(compression).collect();
+            let mut alike = vec![0.0; order * order];
+            compressions.iter().for_each(|row| add_square(&mut alike, 1.0, row));
+            Some(Normal { modes, damping, compressions, alike, gravity: OnceCell::new() })
         };
         self.normal.get_or_init(build).as_ref()
     }
@@ -87,15 +91,23 @@ impl Conservative {
             // It is a block as it stands.
             return None;
         }
-        let Normal { modes, damping: structural, compressions, .. } = self.normal(system, contacts)?;
+        let Normal { modes, damping: structural, compressions, alike, .. } = self.normal(system, contacts)?;
         let mut all = structural.clone();
-        for (&j, row) in self.attached.iter().zip(compressions) {
-            for (entries, x) in all.chunks_exact_mut(row.len()).zip(row) {
-                entries.iter_mut().zip(row).for_each(|(entry, y)| *entry += damping[j] * (x * y));
-            }
+        let first = self.attached.first().map_or(0.0, |&j| damping[j]);
+        if self.attached.iter().all(|&j| damping[j] == first) {
+            all.iter_mut().zip(alike).for_each(|(entry, dashpots)| *entry += first * dashpots);
+        } else {
+            self.attached.iter().zip(compressions).for_each(|(&j, row)| add_square(&mut all, damping[j], row));
         }
         // Without any dashpot no energy is lost, to the bit: see `modes`.
         if all.iter().all(|entry| *entry == 0.0) { None } else { damped::split(modes, &all, room) }
+    }
+}
+
+/// A dashpot along this row, added to a damping matrix.
+fn add_square(matrix: &mut [f64], damping: f64, row: &[f64]) {
+    for (entries, x) in matrix.chunks_exact_mut(row.len()).zip(row) {
+        entries.iter_mut().zip(row).for_each(|(entry, y)| *entry += damping * (x * y));
     }
 }
 
