@@ -115,7 +115,7 @@ pub(crate) struct Modes {
     /// Answer to gravity.
     pub(crate) gravity: Rc<Load>,
     /// What it would be without dashpots.
-    bare: Rc<Conservative>,
+    pub(crate) bare: Rc<Conservative>,
     /// It is split by the normal modes of that.
     pub(crate) is_normal: bool,
 }

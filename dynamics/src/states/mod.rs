@@ -179,7 +179,8 @@ impl States {
             |modes| modes.damping == damping,
             |old| {
                 let build = |_| Conservative::new(system, contacts);
-                let bare = visit(&self.0.undriven.bare, contacts, |_| true, build)?;
+                let bare = || visit(&self.0.undriven.bare, contacts, |_| true, build);
+                let bare = old.as_ref().map_or_else(bare, |old: &Modes| Ok(Rc::clone(&old.bare)))?;
                 Modes::new(system, bare, contacts, damping, old)
             },
         )?;
@@ -200,13 +201,16 @@ fn visit<T>(
     fits: impl Fn(&T) -> bool,
     build: impl FnOnce(Option<T>) -> Result<T, EngineError>,
 ) -> Result<Rc<T>, EngineError> {
-    let old = known.borrow().get(contacts).and_then(|states| states.iter().find(|state| fits(state)).cloned());
-    if let Some(old) = old {
-        return Ok(old);
+    let mut oldest = None;
+    if let Some(states) = known.borrow_mut().get_mut(contacts) {
+        if let Some(old) = states.iter().find(|state| fits(state)) {
+            return Ok(Rc::clone(old));
+        }
+        if states.len() >= MOST_DAMPINGS {
+            oldest = Rc::into_inner(states.remove(0));
+        }
     }
-    let full = |states: &&mut Vec<Rc<T>>| states.len() >= MOST_DAMPINGS;
-    let oldest = known.borrow_mut().get_mut(contacts).filter(full).map(|states| states.remove(0));
-    let new = Rc::new(build(oldest.and_then(Rc::into_inner))?);
+    let new = Rc::new(build(oldest)?);
     let mut known = known.borrow_mut();
     match known.get_mut(contacts) {
         Some(states) => states.push(Rc::clone(&new)),
