@@ -25,14 +25,19 @@ const PANELS_IN_A_ROW: usize = 32;
 /// What a squared signal, which turns twice as fast as its fastest block, turns by in a panel for which the rule of sixteen points is
 /// exact to rounding: of the 32nd derivative of the square it leaves (16!)⁴/(33 (32!)³) 14.8³², which is 10⁻¹⁷.
 const TURN_OF_A_PANEL: f64 = 14.8;
+/// The same for that of eight points: of the 16th derivative it leaves (8!)⁴/(17 (16!)³) 2.3¹⁶.
+const TURN_OF_A_SHORT_PANEL: f64 = 2.3;
 /// What has died away turns by no more than this, so that it gets no more panels.
 const MOST_OF_WHAT_IS_GONE: f64 = 1e5;
 /// decay·t at which a block has died away to rounding.
 const DIED_AWAY: f64 = 40.0;
 
 /// The node and the weight of each pair, in whole registers.
-const RULE: [[Four; 2]; REGISTERS] = {
-    let half = quadrature::half::<{ REGISTERS * WIDTH }>();
+const RULE: [[Four; 2]; REGISTERS] = rule(&quadrature::half::<{ REGISTERS * WIDTH }>());
+const SHORT_RULE: [[Four; 2]; 1] = rule(&quadrature::half::<WIDTH>());
+const REGISTERS: usize = 2;
+
+const fn rule<const REGISTERS: usize>(half: &[[f64; 2]]) -> [[Four; 2]; REGISTERS] {
     let (mut rule, mut i) = ([[Four::ZERO; 2]; REGISTERS], 0);
     while i < REGISTERS {
         let [a, b, c, d] = [half[4 * i], half[4 * i + 1], half[4 * i + 2], half[4 * i + 3]];
@@ -40,13 +45,14 @@ const RULE: [[Four; 2]; REGISTERS] = {
         i += 1;
     }
     rule
-};
-const REGISTERS: usize = 2;
+}
 
 /// The panels of a stretch, over which any number of signals is integrated by the same kernels.
 #[derive(Debug, Default)]
 pub(crate) struct Panels {
     count: usize,
+    /// The rule of eight points is exact.
+    is_short: bool,
     /// Of a panel, s.
     length: f64,
     /// Block by block: c and s after each node beyond the middle, and after the one before it.
@@ -60,13 +66,13 @@ pub(crate) struct Panels {
     ends: Vec<Kernel>,
 }
 
-/// How many panels make the rule exact to rounding over `duration`.
-fn panels(blocks: &[Block], duration: f64) -> usize {
+/// What a squared signal turns by over `duration`.
+fn turn(blocks: &[Block], duration: f64) -> f64 {
     let turn = |block: &Block| {
         let turn = 2.0 * block.radius * duration;
         if block.decay * duration > DIED_AWAY { turn.min(MOST_OF_WHAT_IS_GONE) } else { turn }
     };
-    (blocks.iter().map(turn).fold(1.0, f64::max) / TURN_OF_A_PANEL).ceil() as usize
+    blocks.iter().map(turn).fold(1.0, f64::max)
 }
 
 impl Panels {
@@ -77,7 +83,10 @@ impl Panels {
 
     #[inline(always)]
     fn divide_by_registers(&mut self, blocks: &[Block], bank: &Bank, duration: f64) {
-        self.count = panels(blocks, duration);
+        let turn = turn(blocks, duration);
+        self.count = (turn / TURN_OF_A_PANEL).ceil() as usize;
+        self.is_short = turn < TURN_OF_A_SHORT_PANEL;
+        let rule = if self.is_short { &SHORT_RULE[..] } else { &RULE };
         self.length = duration / self.count as f64;
         let half = 0.5 * self.length;
         self.middle.resize(bank.blocks.len(), Kernels::NONE);
@@ -86,8 +95,8 @@ impl Panels {
         for (k, block) in blocks.iter().enumerate() {
             let middle = self.middle[k / WIDTH].at(k % WIDTH);
             let mut nodes = [[Four::ZERO; 4]; REGISTERS];
-            for (nodes, [x, _]) in nodes.iter_mut().zip(RULE) {
-                *nodes = block.kernels_about(half, middle, x * half);
+            for (nodes, [x, _]) in nodes.iter_mut().zip(rule) {
+                *nodes = block.kernels_about(half, middle, *x * half);
             }
             self.nodes.push(nodes);
         }
@@ -127,6 +136,16 @@ impl Panels {
     /// ∫ s and ∫ s² of the signal and, of two, of its rate, with what loads add to each.
     #[inline(always)]
     fn by_registers<const Q: usize>(&mut self, blocks: &[Block], loads: [Parabola; Q]) -> [[f64; 2]; Q] {
+        if self.is_short { self.by(&SHORT_RULE, blocks, loads) } else { self.by(&RULE, blocks, loads) }
+    }
+
+    #[inline(always)]
+    fn by<const Q: usize, const R: usize>(
+        &mut self,
+        rule: &[[Four; 2]; R],
+        blocks: &[Block],
+        loads: [Parabola; Q],
+    ) -> [[f64; 2]; Q] {
         let half = 0.5 * self.length;
         let mut sums = [[Four::ZERO; 2]; Q];
         for panel in 0..self.count {
@@ -138,7 +157,7 @@ impl Panels {
             }
             let now = if panel > 0 { &self.now } else { &self.start };
             let middle = Four::all((2 * panel + 1) as f64 * half);
-            let sides = RULE.map(|[x, _]| [middle + x * half, middle - x * half]);
+            let sides = rule.map(|[x, _]| [middle + x * half, middle - x * half]);
             let mut values = loads.map(|Parabola { p0, p1, p2 }| {
                 sides.map(|sides| sides.map(|t| Four::all(p0) + t * (Four::all(p1) + t * p2)))
             });
@@ -154,7 +173,7 @@ impl Panels {
                 }
             }
             for ([sum, square], values) in sums.iter_mut().zip(values) {
-                for ([after, before], [_, weight]) in values.into_iter().zip(RULE) {
+                for ([after, before], [_, weight]) in values.into_iter().zip(*rule) {
                     *sum = *sum + (after + before) * weight;
                     *square = *square + (after * after + before * before) * weight;
                 }
