@@ -399,13 +399,11 @@ fn newton<const N: usize>(lambda: Complexes, work: &mut Work) -> Complexes {
         inverse[i] = pivot.inverse();
         r = pivot;
     }
+    x.fill(Complexes::ZERO);
     x[n - 1] = ONE;
-    for i in (0..n - 1).rev() {
-        let mut sum = Complexes::ZERO;
-        for (row, x) in lower.chunks_exact(n).zip(&*x).skip(i + 1) {
-            sum = sum.minus(row[i].times(*x));
-        }
-        x[i] = sum;
+    for (i, row) in lower.chunks_exact(n).enumerate().rev() {
+        let (before, own) = x.split_at_mut(i);
+        before.iter_mut().zip(row).for_each(|(x, l)| *x = x.minus(l.times(own[0])));
     }
     step(lambda, r, norms(x, squares))
 }
