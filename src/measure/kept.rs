@@ -140,6 +140,8 @@ pub(super) fn of_cycles(energies: &Energies, cycles: std::ops::Range<usize>) -> 
 pub enum ProofOf {
     /// A number.
     Number(fn(&Evaluated) -> f64),
+    /// A residual, which audited runs alone have.
+    Residual(fn(&Evaluated) -> f64),
     /// A count.
     Count(fn(&Evaluated) -> u64),
 }
@@ -161,8 +163,8 @@ const fn proof(name: &'static str, unit: &'static str, of: ProofOf) -> ProofColu
 
 /// What proves a row, in the order of the table.
 pub const PROOF: [ProofColumn; 7] = [
-    proof("momentum_residual", "", ProofOf::Number(|row| row.proof.momentum_residual)),
-    proof("energy_residual", "", ProofOf::Number(|row| row.proof.energy_residual)),
+    proof("momentum_residual", "", ProofOf::Residual(|row| row.proof.momentum_residual)),
+    proof("energy_residual", "", ProofOf::Residual(|row| row.proof.energy_residual)),
     proof("events", "", ProofOf::Count(|row| row.proof.events)),
     proof("smallest_margin", "m", ProofOf::Number(|row| row.proof.smallest_margin)),
     proof("ties", "", ProofOf::Count(|row| row.proof.ties)),

@@ -1,17 +1,16 @@
 //! What a table says of rows whose numbers are to be doubted: columns that are there only where some row gives cause.
 
-use crate::dynamics::Proof;
 use crate::measure::{Evaluated, Measure};
 use crate::table::{Column, Data, UNDEFINED};
 
 pub(super) use crate::table::RESIDUAL_BOUND;
 
-/// The bound that the residuals of a row exceed; NaN in rows that balance.
-pub(super) fn residual_bounds(proofs: impl Iterator<Item = Option<Proof>>) -> Option<Column> {
-    let exceeded = |proof: Option<Proof>| {
-        proof.filter(|proof| !proof.is_balanced()).map_or(f64::NAN, |proof| proof.residual_bound)
+/// The bound that the residuals of an audited row exceed; NaN in all other rows.
+pub(super) fn residual_bounds(audited: &[Option<&Evaluated>]) -> Option<Column> {
+    let exceeded = |row: &Option<&Evaluated>| {
+        row.map(|row| row.proof).filter(|proof| !proof.is_balanced()).map_or(f64::NAN, |proof| proof.residual_bound)
     };
-    let bounds: Vec<f64> = proofs.map(exceeded).collect();
+    let bounds: Vec<f64> = audited.iter().map(exceeded).collect();
     bounds.iter().any(|bound| !bound.is_nan()).then(|| Column::new(RESIDUAL_BOUND, Data::Float(bounds)))
 }
 

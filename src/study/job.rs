@@ -18,6 +18,13 @@ pub(super) struct Job {
     pub same_as: Option<usize>,
 }
 
+impl Job {
+    /// Whether its run is a result; what is moved for sensitivity is not audited.
+    pub(super) fn is_audited(&self) -> bool {
+        self.variant == 0 || self.same_as.is_some()
+    }
+}
+
 /// The rows of an experiment in the order of its table: baseline first, then each variant; in each the cases in the order
 /// of the sweep, each under its solvers. Variants are for sensitivity, and run event-driven only.
 pub(super) fn jobs(experiment: &Experiment, variants: &[Variant]) -> Vec<Job> {

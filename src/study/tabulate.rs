@@ -78,9 +78,10 @@ pub(super) fn table(
     }
     let evaluated: Vec<Option<&Evaluated>> =
         outcomes.iter().map(|outcome| outcome.as_ref().ok().map(|row| &row.evaluated)).collect();
-    let [momentum, energy, others @ ..] = proof(&evaluated);
+    let audited = only(&evaluated, |row| jobs[row].is_audited());
+    let [momentum, energy, others @ ..] = proof(&evaluated, &audited);
     columns.extend([momentum, energy]);
-    columns.extend(doubt::residual_bounds(evaluated.iter().map(|row| row.map(|row| row.proof))));
+    columns.extend(doubt::residual_bounds(&audited));
     columns.extend(others);
     columns.push(Column::new(
         "failure",
@@ -101,11 +102,20 @@ pub(super) fn measured(measure: Measure, of: impl Fn(fn(&Measured) -> f64) -> Da
     ]
 }
 
-/// What proves the rows, in columns; a row without numbers has NaN and 0 there.
-pub(super) fn proof(rows: &[Option<&Evaluated>]) -> [Column; PROOF.len()] {
+/// These rows, and nothing in the place of all others.
+pub(super) fn only<'a>(rows: &[Option<&'a Evaluated>], is_one: impl Fn(usize) -> bool) -> Vec<Option<&'a Evaluated>> {
+    rows.iter().enumerate().map(|(row, it)| it.filter(|_| is_one(row))).collect()
+}
+
+/// What proves the rows, of which some are audited, in columns; what a row does not have is NaN, or 0 of a count.
+pub(super) fn proof(rows: &[Option<&Evaluated>], audited: &[Option<&Evaluated>]) -> [Column; PROOF.len()] {
+    let numbers = |rows: &[Option<&Evaluated>], of: fn(&Evaluated) -> f64| {
+        Data::Float(rows.iter().map(|row| row.map_or(f64::NAN, of)).collect())
+    };
     PROOF.map(|column| {
         let data = match column.of {
-            ProofOf::Number(of) => Data::Float(rows.iter().map(|row| row.map_or(f64::NAN, of)).collect()),
+            ProofOf::Number(of) => numbers(rows, of),
+            ProofOf::Residual(of) => numbers(audited, of),
             ProofOf::Count(of) => {
                 let count = |row: &Option<&Evaluated>| row.map_or(0, |row| i64::try_from(of(row)).unwrap_or(i64::MAX));
                 Data::Int(rows.iter().map(count).collect())

@@ -114,8 +114,9 @@ pub(super) fn table(
         columns.extend(measured(*measure, of));
     }
     let evaluated: Vec<Option<&Evaluated>> = rows.iter().map(|row| row.measured.as_ref().ok()).collect();
-    columns.extend(proof(&evaluated));
-    columns.extend(doubt::residual_bounds(evaluated.iter().map(|row| row.map(|row| row.proof))));
+    // Orbits are audited under all assumptions.
+    columns.extend(proof(&evaluated, &evaluated));
+    columns.extend(doubt::residual_bounds(&evaluated));
     columns.push(Column::new("failure", texts(&|row| row.failure().map(ToString::to_string).unwrap_or_default())));
     columns.extend(doubt::undefined(&experiment.measures, evaluated.iter().copied()));
     Table { columns, metadata, fingerprints: Vec::new() }

@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use super::doubt;
 use super::record::Failures;
 use super::row_failure::RowFailure;
+use super::tabulate;
 use super::variant::Variant;
 use crate::experiment::{Experiment, GapWord, Goal, Optimise};
-use crate::measure::{Evaluated, Measured, PROOF, SolverChoice};
+use crate::measure::{Evaluated, Measured, SolverChoice};
 use crate::table::{Column, Data, Table};
 use crate::text::words;
 
@@ -113,12 +114,14 @@ pub(super) fn table(
     for (index, measure) in experiment.measures.iter().enumerate() {
         let of =
             |part: fn(&Measured) -> f64| Data::Float(candidates.iter().map(|it| part(&it.measured(index))).collect());
-        columns.extend(super::tabulate::measured(*measure, of));
+        columns.extend(tabulate::measured(*measure, of));
     }
     columns.extend(outcome(experiment, optimise, candidates));
     columns.push(texts("stopped", &|it| it.stopped.clone()));
-    columns.extend(proof(candidates));
-    columns.extend(doubt::residual_bounds(candidates.iter().map(|it| it.outcome.as_ref().ok().map(|one| one.proof))));
+    let evaluated: Vec<Option<&Evaluated>> = candidates.iter().map(|it| it.outcome.as_ref().ok()).collect();
+    let audited = tabulate::only(&evaluated, |row| candidates[row].variant == 0);
+    columns.extend(tabulate::proof(&evaluated, &audited));
+    columns.extend(doubt::residual_bounds(&audited));
     columns.push(texts("failure", &|it| it.failure()));
     columns.extend(lists(optimise, candidates));
     Table { columns, metadata, ..Table::default() }
@@ -161,11 +164,6 @@ fn outcome(experiment: &Experiment, optimise: &Optimise, candidates: &[Candidate
         Column::new("improvement_num", part(1)).with_unit(unit),
         Column::new("evaluations", Data::Int(evaluations)),
     ]
-}
-
-fn proof(candidates: &[Candidate]) -> [Column; PROOF.len()] {
-    let rows: Vec<Option<&Evaluated>> = candidates.iter().map(|it| it.outcome.as_ref().ok()).collect();
-    super::tabulate::proof(&rows)
 }
 
 /// Convergence and landscape; of the baseline alone.

@@ -12,7 +12,7 @@ use shotdamp::study::{
     RowFailure, Simulation, Snapshot, Study, Summary, Texts,
 };
 
-use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP};
+use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP, THREE_GAPS, shotdamp};
 
 #[test]
 fn the_bytes_do_not_depend_on_the_number_of_threads() {
@@ -65,6 +65,33 @@ fn a_row_is_a_case_under_a_solver_in_a_variant() {
 }
 
 /// The equation of the mass measure is lost: its readings are compared, though no scene depends on them.
+/// A residual of 0 would be read as a balance that closes to the last digit.
+#[test]
+fn of_a_row_that_nobody_audits_the_table_has_no_residual_and_the_row_counts() {
+    let stopped = THREE_GAPS
+        .replace(", sensitivity: none", "")
+        .replace("floor: {", "stop: {length: assumed, restitution: 0}, floor: {");
+    let desk = Desk::of_one("experiments/ch3/ch3-long.yaml", &stopped);
+    // Assumptions are moved for numbers that are compared.
+    let entry =
+        "{id: it, place: s. 3, says: It is 7., value: 7 m/s, from: {cell: {of: rms_velocity, where: {gap_ratio: 50}}}}";
+    desk.put("reference/ch3/ch3-long.yaml", &format!("entries:\n  - {entry}\n"));
+    for _ in ["from nothing", "from a table"] {
+        assert_eq!(shotdamp(&desk, &["run", "--tables"]).code, 0);
+        let table = desk.table("ch3-long");
+        let variants = table.texts("variant").unwrap();
+        assert!(variants.iter().any(|variant| variant == "stop_length=0.05"));
+        for column in ["momentum_residual", "energy_residual"] {
+            for (variant, residual) in variants.iter().zip(table.floats(column).unwrap()) {
+                assert_eq!(residual.is_nan(), variant != "baseline", "{column} of {variant}: {residual}");
+            }
+        }
+        assert!((0..table.rows()).all(|row| !table.is_unbalanced(row)));
+        // All but one row is read from the table before.
+        desk.put("experiments/ch3/ch3-long.yaml", &stopped.replace("[10, 50, 90]", "[10, 50, 90, 95]"));
+    }
+}
+
 #[test]
 fn a_measure_that_can_be_read_in_several_ways_is_computed_for_each_of_them() {
     let desk = Desk::new();
