@@ -17,11 +17,11 @@ use super::select::{choose, matches, no_match};
 use super::thresholds;
 use crate::accuracy::{idle_cases, out_of_reach_in_words, unreached_cases};
 use crate::dynamics::{Allowance, Limit, Until, in_words};
-use crate::experiment::{Continuation, Experiment, RowSource, value_in_words};
+use crate::experiment::{AssumptionSheet, Continuation, Experiment, RowSource, value_in_words};
 use crate::measure::Settings;
 use crate::report::{LastVerdicts, VERDICTS, scenes};
 use crate::scene::{Scene, effects};
-use crate::study::{Item, Layout, State, Study, Texts, forecast};
+use crate::study::{Item, Layout, Loaded, Source, State, Study, Texts, forecast};
 use crate::text::number::quantity;
 use crate::text::words::{counted, of_key};
 
@@ -75,6 +75,8 @@ impl Section {
 
 /// What the thread has made.
 enum Made {
+    /// What is known of all experiments before their cases are tried, in the place of their sections.
+    Untried(String),
     /// The files are read; so many experiments are to be described.
     Read { experiments: u32 },
     /// A section of an experiment.
@@ -96,9 +98,10 @@ pub(super) fn show(layout: &Layout, id: &str) -> Result<Exit, CliError> {
         });
     }
     let mut texts: BTreeMap<(usize, Section), String> = BTreeMap::new();
-    let mut read = None;
+    let (mut untried, mut read) = (None, None);
     let exit = loop {
         match inbox.recv_timeout(LOOK) {
+            Ok(Made::Untried(text)) => untried = Some(text),
             Ok(Made::Read { experiments }) => read = Some(experiments),
             Ok(Made::Section(index, section, text)) => drop(texts.insert((index, section), text)),
             Ok(Made::All(exit)) => break exit?,
@@ -106,7 +109,7 @@ pub(super) fn show(layout: &Layout, id: &str) -> Result<Exit, CliError> {
             Err(RecvTimeoutError::Timeout) => {}
         }
         if begun.elapsed() > BOUND * read.unwrap_or(1).max(1) {
-            break if read.is_some() { Exit::AsExpected } else { Exit::CouldNot };
+            break if read.is_some() || untried.is_some() { Exit::AsExpected } else { Exit::CouldNot };
         }
     };
     let mut text = String::new();
@@ -124,7 +127,13 @@ pub(super) fn show(layout: &Layout, id: &str) -> Result<Exit, CliError> {
         }
     }
     if read.is_none() {
-        print_error(&format!("error: {id}: checking its cases takes more than {}\n", in_words(BOUND)));
+        let bound = in_words(BOUND);
+        match untried {
+            Some(known) => {
+                text = known + &format!("\nLeft out, since checking all cases takes more than {bound}: all else\n")
+            }
+            None => print_error(&format!("error: {id}: reading it takes more than {bound}\n")),
+        }
     }
     print(&text)?;
     Ok(exit)
@@ -138,6 +147,7 @@ fn make(layout: &Layout, id: &str, made: &Sender<Made>) -> Result<Exit, CliError
     if !ids.is_empty() && !ids.iter().any(|known| matches(id, known)) {
         return Err(no_match(id, &ids));
     }
+    let _ = made.send(Made::Untried(untried(&Loaded::untried(&texts, &|stem| matches(id, stem)))));
     let study = Study::of(layout.clone(), texts, &|stem| matches(id, stem));
     let chosen = choose(&study, &Choice { patterns: vec![id.into()], folder: None })?;
     print_unread(chosen.unread.iter().copied());
@@ -156,6 +166,16 @@ fn make(layout: &Layout, id: &str, made: &Sender<Made>) -> Result<Exit, CliError
     Ok(if chosen.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })
 }
 
+/// The cheapest sections of all experiments.
+fn untried(loaded: &Loaded) -> String {
+    let of_one = |source: &Source| {
+        let experiment = &source.experiment;
+        let cases = counted(experiment.cases.len(), "case", "cases");
+        heading(source) + &first_scene(&loaded.sheet, experiment) + &format!("\nCases\n  {cases}\n")
+    };
+    loaded.sources.iter().map(of_one).collect::<Vec<_>>().join("\n")
+}
+
 /// A section; `all` keeps the scenes of all cases once they are there.
 fn describe(
     study: &Study,
@@ -166,8 +186,8 @@ fn describe(
 ) -> String {
     let experiment = &item.source.experiment;
     match section {
-        Section::Heading => heading(item),
-        Section::Scene => first_scene(study, experiment),
+        Section::Heading => heading(&item.source),
+        Section::Scene => first_scene(&study.sheet, experiment),
         Section::Effects => in_force(all.get_or_insert_with(|| scenes(study, experiment))),
         Section::Idle => {
             let idle = idle(experiment, all.get_or_insert_with(|| scenes(study, experiment)));
@@ -190,17 +210,16 @@ fn describe(
     }
 }
 
-fn heading(item: &Item) -> String {
-    let experiment = &item.source.experiment;
+fn heading(Source { experiment, file }: &Source) -> String {
     let source = &experiment.source;
     let section = source.section.as_ref().map(|section| format!("s. {section}"));
     let place: Vec<String> = section.into_iter().chain(source.shown_in.iter().cloned()).collect();
     let place = if place.is_empty() { String::new() } else { place.join(", ") + "; " };
-    format!("{}: {}\n{place}{}\n\n{}\n", experiment.id, experiment.title, item.source.file, experiment.about)
+    format!("{}: {}\n{place}{}\n\n{}\n", experiment.id, experiment.title, file, experiment.about)
 }
 
-fn first_scene(study: &Study, experiment: &Experiment) -> String {
-    let assumptions = study.sheet.assumptions();
+fn first_scene(sheet: &AssumptionSheet, experiment: &Experiment) -> String {
+    let assumptions = sheet.assumptions();
     let first = experiment.cases.first();
     let scene = first.and_then(|case| experiment.recipe_of(case).ok()?.resolve(&assumptions).ok());
     let case = first.map(|case| case.describe()).filter(|case| !case.is_empty());

@@ -51,7 +51,9 @@ impl FromStr for RowLimit {
     fn from_str(text: &str) -> Result<Self, NoLimit> {
         let mut limit = Self::default();
         for part in text.split(',').map(str::trim) {
-            let taken = match (events(part), time(part)) {
+            // Beside times a number alone would leave open what it counts.
+            let counted = part.strip_suffix("events").and_then(events);
+            let taken = match (counted, time(part)) {
                 (Some(events), _) => limit.events.replace(events).is_some(),
                 (_, Some(time)) => limit.time.replace(time).is_some(),
                 _ => true,
@@ -122,9 +124,11 @@ mod tests {
         let time = |seconds| Some(Duration::from_secs(seconds));
         assert_eq!(limit("1e7 events"), Ok(RowLimit { events: Some(10_000_000), time: None }));
         assert_eq!(limit("30 s"), Ok(RowLimit { events: None, time: time(30) }));
-        assert_eq!(limit("5min, 1000"), Ok(RowLimit { events: Some(1000), time: time(300) }));
+        assert_eq!(limit("5min, 1000 events"), Ok(RowLimit { events: Some(1000), time: time(300) }));
         assert_eq!(limit("2 h"), Ok(RowLimit { events: None, time: time(7200) }));
-        for wrong in ["", "0", "-1 s", "0 s", "1.5 events", "1e300 s", "soon", "1 s, 2 s", "nan", "inf h"] {
+        for wrong in
+            ["", "0", "5", "1 min, 5", "-1 s", "0 s", "1.5 events", "1e300 s", "soon", "1 s, 2 s", "nan", "inf h"]
+        {
             assert!(limit(wrong).is_err(), "{wrong}");
         }
     }

@@ -142,6 +142,12 @@ impl Loaded {
         Self::chosen(texts, &|_| true, &|_| Cases::ToTry)
     }
 
+    /// Reads the assumptions, and the experiments whose ids are `wanted`, without trying their cases, which takes longest.
+    #[must_use]
+    pub fn untried(texts: &Texts, wanted: &dyn Fn(&str) -> bool) -> Self {
+        Self::chosen(texts, wanted, &|_| Cases::Tried)
+    }
+
     /// Reads the assumptions, and the experiments whose ids are `wanted`; the cases of some were tried before.
     #[must_use]
     pub(super) fn chosen(texts: &Texts, wanted: &dyn Fn(&str) -> bool, cases: &dyn Fn(&str) -> Cases) -> Self {
@@ -166,8 +172,8 @@ impl Loaded {
             files_by_stem.entry(stem(file)).or_default().push(file);
         }
         for (file, bytes) in experiments() {
-            let source = identify(file, &files_by_stem).and_then(|id| {
-                let text = text(file, bytes)?;
+            let source = text(file, bytes).and_then(|text| {
+                let id = identify(file, &files_by_stem)?;
                 let experiment = parse_with(&id, file, text, &assumptions, cases(&id.0)).map_err(Refused::Text)?;
                 Ok(Source { experiment, file: file.clone() })
             });

@@ -15,7 +15,7 @@ use crate::experiment::ExperimentId;
 use crate::table::{ParquetError, parquet};
 
 /// Writes an experiment's table and then its record, which is what makes the table count. An earlier
-/// table with another fingerprint is kept for the day when its inputs come back.
+/// table with another fingerprint is kept for the day when its inputs come back, one with more numbers for the next run.
 ///
 /// # Errors
 /// [`ParquetError`] if one of them cannot be written; the record is then still that of the table before, or absent.
@@ -24,7 +24,7 @@ pub fn save(layout: &Layout, item: &Item, finished: &Finished) -> Result<Record,
     let path = layout.path(&table_name(id));
     let old = Record::read(&layout.path(&record_name(id)), id).ok();
     if let Some(old) = &old
-        && old.simulation != item.simulation
+        && (old.simulation != item.simulation || old.failures.rows < finished.failures.rows)
         && old.table.matches(&path)
     {
         earlier::put_aside(layout, id, &old.table);

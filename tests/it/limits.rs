@@ -48,6 +48,21 @@ fn a_row_at_its_limit_fails_with_the_reason_and_a_higher_limit_resumes_there() {
 }
 
 #[test]
+fn a_limit_that_was_set_too_low_costs_no_result_that_was_there() {
+    let desk = study(THREE_GAPS);
+    assert_eq!(shotdamp(&desk, &["run"]).code, 0);
+    let whole = desk.bytes("results/ch3-long.parquet");
+    assert_eq!(shotdamp(&desk, &["run", "--force", "--row-limit", "5 events"]).code, 2);
+    assert!(desk.bytes("results/ch3-long.parquet") != whole);
+    // With less than one event a row could not be simulated again.
+    assert_eq!(shotdamp(&desk, &["run", "--row-limit", "1 events"]).code, 0);
+    assert!(desk.bytes("results/ch3-long.parquet") == whole);
+    let said = shotdamp(&desk, &["run", "--force", "--row-limit", "5"]);
+    assert!(said.code == 2 && said.err.contains("write for example `1e8 events`"), "{}", said.err);
+    assert!(desk.bytes("results/ch3-long.parquet") == whole);
+}
+
+#[test]
 fn the_limit_of_time_ends_a_row() {
     let desk = study(&endless());
     let begun = Instant::now();
@@ -272,6 +287,7 @@ fn show_ends_soon_and_says_what_it_left_out() {
         let took: f64 = told.lines().last().unwrap().split_whitespace().map(seconds).sum();
         assert!(took < 2.0, "{took} s\n{told}");
         assert!(told.contains("takes more than 1.5 s") || told.contains("Fingerprint"), "{told}");
+        assert!(told.contains("ch3-long: ") && told.contains("\nScene of the first case ("), "{told}");
     }
     let said = shotdamp(&study(THREE_GAPS), &["show", "ch3-long"]);
     assert!(!said.out.contains("Left out") && said.out.contains("Fingerprint"), "{}", said.out);
