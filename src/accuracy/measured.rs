@@ -285,7 +285,7 @@ fn reference(
     longest: Duration,
 ) -> Result<(Response, Response, Origin), NoAccuracy> {
     let begun = Instant::now();
-    let patience = MOST_PATIENCE.max(20 * longest);
+    let patience = MOST_PATIENCE.max(longest.saturating_mul(20));
     let both = precise(&trial.system, recorded, patience).and_then(|with| {
         let left = patience.saturating_sub(begun.elapsed());
         Ok((with, precise(&trial.undamped, &trial.undamped_options, left)?))

@@ -20,7 +20,10 @@ pub use measured::{
     Accuracy, CaseAccuracy, Contender, Errors, EventTimes, NoAccuracy, Origin, Point, Skipped, accuracy, errors,
 };
 pub use page::{AccuracyView, accuracy_page, accuracy_summary};
-pub use publish::{Measured, accuracy_view, keep_measured, publish_accuracy, publish_accuracy_summary, read_measured};
+pub use publish::{
+    Measured, accuracy_view, check_publishable, keep_measured, publish_accuracy, publish_accuracy_summary,
+    read_measured,
+};
 pub use representative::representative;
 pub use timing::Times;
 pub use verdict_price::VerdictPrice;

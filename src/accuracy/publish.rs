@@ -19,6 +19,10 @@ use crate::table::{BASELINE, Column, Data, Table};
 
 /// The record, within the study.
 const RECORD: &str = "reports/accuracy.json";
+/// The summary.
+const SUMMARY: &str = "reports/accuracy.md";
+/// The folder of pages and pictures.
+const PAGES: &str = "reports/accuracy";
 
 /// What was measured of an experiment, and where.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -27,6 +31,15 @@ pub struct Measured {
     pub machine: Machine,
     /// What was measured.
     pub accuracy: Accuracy,
+}
+
+/// Whether the record, pages and pictures can be written, before anything is measured; leaves nothing behind.
+///
+/// # Errors
+/// [`FileError`] with the system's reason.
+pub fn check_publishable(layout: &Layout) -> Result<(), FileError> {
+    atomic::check_writable(&layout.path(RECORD))?;
+    atomic::check_writable(&layout.path(PAGES).join("page.md"))
 }
 
 /// All that was measured so far, by experiment; what cannot be read counts as nothing.
@@ -81,11 +94,11 @@ pub fn publish_accuracy(layout: &Layout, experiment: &Experiment, view: &Accurac
     let times = seconds.iter().fold([f64::INFINITY, 0.0], |[low, high], time| [time.min(low), time.max(high)]);
     // A diagram without a single error to show has no picture; the table says so.
     if let Ok(picture) = draw(experiment, &work_precision(times, floor, events), &table, Beside::default()) {
-        let path = layout.path(&format!("reports/accuracy/{id}.png"));
+        let path = layout.path(&format!("{PAGES}/{id}.png"));
         atomic::write_if_changed(&path, &picture.png)?;
     }
     let page = accuracy_page(view, &format!("{id}.png"));
-    atomic::write_if_changed(&layout.path(&format!("reports/accuracy/{id}.md")), page.as_bytes())?;
+    atomic::write_if_changed(&layout.path(&format!("{PAGES}/{id}.md")), page.as_bytes())?;
     Ok(page)
 }
 
@@ -99,7 +112,7 @@ pub fn publish_accuracy_summary(layout: &Layout, views: &[AccuracyView]) -> Resu
         atomic::write_if_changed(&layout.path("reports/accuracy.png"), &picture.png)?;
     }
     let text = accuracy_summary(views);
-    atomic::write(&layout.path("reports/accuracy.md"), text.as_bytes())?;
+    atomic::write(&layout.path(SUMMARY), text.as_bytes())?;
     Ok(text)
 }
 

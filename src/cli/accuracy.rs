@@ -1,7 +1,6 @@
 //! `shotdamp accuracy`: error against time.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::time::Duration;
 
 use rayon::prelude::*;
 
@@ -11,7 +10,8 @@ use super::exit::Exit;
 use super::output::{print, print_error, print_unread};
 use super::select::{choose, open};
 use crate::accuracy::{
-    Errors, Measured, accuracy_view, errors, keep_measured, publish_accuracy, publish_accuracy_summary, read_measured,
+    Errors, Measured, accuracy_view, check_publishable, errors, keep_measured, publish_accuracy,
+    publish_accuracy_summary, read_measured,
 };
 use crate::dynamics::is_interrupted;
 use crate::report::{Judgement, judge_all};
@@ -32,14 +32,15 @@ pub(super) fn measure(layout: &Layout, args: &AccuracyArgs) -> Result<Exit, CliE
     let patterns = if args.all { Vec::new() } else { args.patterns.clone() };
     let chosen = choose(&study, &Choice { patterns, folder: None })?;
     print_unread(chosen.unread.iter().copied());
+    // Before minutes of work, not after them.
+    check_publishable(layout)?;
     let assumptions = study.sheet.assumptions();
-    let longest = Duration::try_from_secs_f64(args.longest).unwrap_or(Duration::MAX / 32);
     let mut exit = if chosen.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot };
     let judgement = judge_all(&study);
     let mut measured = read_measured(layout);
     // Errors side by side, times one after the other with nothing beside them.
     let prepared: Vec<_> =
-        chosen.items.par_iter().map(|item| errors(&item.source.experiment, &assumptions, longest)).collect();
+        chosen.items.par_iter().map(|item| errors(&item.source.experiment, &assumptions, args.longest)).collect();
     for (item, errors) in chosen.items.iter().zip(prepared) {
         let experiment = &item.source.experiment;
         let timed = errors.map(Errors::timed);

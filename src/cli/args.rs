@@ -1,6 +1,7 @@
 //! The arguments of the command, with their help.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Parser, Subcommand};
@@ -256,6 +257,15 @@ pub(super) struct ReportArgs {
 }
 
 #[derive(Debug, thiserror::Error)]
+#[error("write a number of seconds above zero, such as 0.5")]
+struct SecondsError;
+
+fn seconds(text: &str) -> Result<Duration, SecondsError> {
+    let seconds = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    seconds.filter(|seconds| !seconds.is_zero()).ok_or(SecondsError)
+}
+
+#[derive(Debug, thiserror::Error)]
 #[error("there is no such day; write a date as 2026-11-21")]
 struct DateError;
 
@@ -298,8 +308,8 @@ pub(super) struct AccuracyArgs {
     #[arg(long, conflicts_with_all = ["all", "patterns"])]
     pub pages: bool,
     /// Longest run in seconds; smaller steps are skipped
-    #[arg(long, value_name = "SECONDS", default_value_t = 2.0)]
-    pub longest: f64,
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "2")]
+    pub longest: Duration,
     #[command(flatten)]
     pub limit: LimitArgs,
 }

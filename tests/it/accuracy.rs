@@ -11,6 +11,8 @@ use shotdamp::experiment::{Assumptions, Experiment, load_assumptions, parse_expe
 use shotdamp::reference::{Price, Verdict};
 use shotdamp::study::Machine;
 
+use crate::desk::{Desk, THREE_GAPS, shotdamp};
+
 fn assumptions() -> Assumptions {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/assumptions.yaml");
     load_assumptions(&file).expect("the assumptions can be read").assumptions()
@@ -153,4 +155,21 @@ fn each_effect_is_switched_and_what_is_idle_is_left_alone() {
         text.contains("| limit stop | named, idle | skipped already: 500 m away, and the energy of the run"),
         "{text}"
     );
+}
+
+#[test]
+fn pages_that_cannot_be_written_are_told_before_anything_is_measured() {
+    let desk = Desk::of_one("experiments/ch3/ch3-long.yaml", THREE_GAPS);
+    for in_the_way in ["reports/accuracy", "reports"] {
+        // In the place of the folder, which nobody can write into.
+        let _ = std::fs::remove_dir_all(desk.layout.path("reports"));
+        desk.put(in_the_way, "");
+        let said = shotdamp(&desk, &["accuracy", "ch3-long"]);
+        assert!(said.code == 2 && said.err.contains("cannot write ") && said.out.is_empty(), "{}", said.err);
+        assert!(!desk.layout.path("reports/accuracy.json").exists());
+    }
+    for longest in ["nan", "inf", "0", "2 s"] {
+        let said = shotdamp(&desk, &["accuracy", "ch3-long", "--longest", longest]);
+        assert!(said.code == 2 && said.err.contains("write a number of seconds above zero"), "{}", said.err);
+    }
 }
