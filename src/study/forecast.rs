@@ -4,6 +4,8 @@ use std::time::Duration;
 
 use cpu_time::ThreadTime;
 
+use super::threshold::missed;
+use crate::dynamics::{Allowance, Limit};
 use crate::experiment::{Assumptions, Experiment};
 use crate::measure::SolverChoice;
 use crate::scene::{Scene, Surface};
@@ -43,7 +45,9 @@ pub fn forecast(experiment: &Experiment, assumptions: &Assumptions) -> Vec<Strin
             }
         }
     }
-    warnings.into_iter().map(|(_, warning)| warning).collect()
+    let limit = Limit { time: PATIENCE, ..Limit::default() };
+    let missed = Allowance::new(limit).simulate(|| missed(experiment, assumptions));
+    warnings.into_iter().map(|(_, warning)| warning).chain(missed).collect()
 }
 
 /// Of what a warning is.

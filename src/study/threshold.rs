@@ -6,9 +6,11 @@
 
 use super::refine::number_of;
 use crate::dynamics;
-use crate::experiment::{Assumptions, Case, Experiment, Parameter, Threshold, by_strength};
+use crate::experiment::{Assumptions, Case, Experiment, Parameter, Threshold, by_strength, curves};
 use crate::measure::rounded;
 use crate::scene::compile;
+use crate::text::number::quantity;
+use crate::text::words::of_key;
 
 /// Points beside a threshold are off it by this share.
 const BESIDE: f64 = 1e-3;
@@ -38,7 +40,7 @@ pub fn thresholds(experiment: &Experiment, assumptions: &Assumptions) -> Vec<Thr
             .map(|&case| &experiment.cases[case])
             .reduce(|strongest, case| if case.number(over) > strongest.number(over) { case } else { strongest });
         for &threshold in Threshold::ALL {
-            let at = strongest.and_then(|case| place(experiment, assumptions, threshold, case, over));
+            let at = strongest.and_then(|case| place(experiment, assumptions, threshold, case, over).ok()?);
             let Some(at) = at else { continue };
             let is_below = |case: &&usize| experiment.cases[**case].number(over).is_some_and(|x| x < at);
             let below = cases.iter().filter(is_below).count();
@@ -54,6 +56,36 @@ pub fn thresholds(experiment: &Experiment, assumptions: &Assumptions) -> Vec<Thr
     found
 }
 
+/// The curves that shall have points beside a threshold and get none, each threshold once, in words.
+pub(super) fn missed(experiment: &Experiment, assumptions: &Assumptions) -> Vec<String> {
+    let mut told: Vec<(Threshold, String)> = Vec::new();
+    for curve in curves(&experiment.cases, &experiment.refined) {
+        let cases: Vec<Case> = curve.cases.iter().map(|&case| experiment.cases[case].clone()).collect();
+        let over = curve.rule.over;
+        let Some((threshold, strongest)) = curve.rule.around.zip(strongest(&cases, over)) else { continue };
+        // A place that is not known yet may still be found.
+        let Ok(at) = place(experiment, assumptions, threshold, strongest, over) else { continue };
+        if told.iter().any(|(known, _)| *known == threshold)
+            || !around(experiment, assumptions, threshold, over, &cases).is_empty()
+        {
+            continue;
+        }
+        let why = match at {
+            Some(at) => {
+                format!("its place, {} = {}, lies outside the range", of_key(&over), quantity(at, over.unit(), 4))
+            }
+            None => "this scene has no such place".into(),
+        };
+        told.push((threshold, format!("`around: {}` adds no points: {why}", of_key(&threshold))));
+    }
+    told.into_iter().map(|(_, warning)| warning).collect()
+}
+
+/// The case of a curve at its greatest strength.
+fn strongest(curve: &[Case], over: Parameter) -> Option<&Case> {
+    curve.iter().max_by(|a, b| number_of(a, over).total_cmp(&number_of(b, over)))
+}
+
 /// The cases on both sides of a threshold within the range of a curve, whose cases differ in this parameter alone.
 pub(super) fn around(
     experiment: &Experiment,
@@ -66,30 +98,31 @@ pub(super) fn around(
         let numbers = || curve.iter().filter_map(|case| case.number(over));
         numbers().any(|x| x < value) && numbers().any(|x| x > value)
     };
-    let Some(strongest) = curve.iter().max_by(|a, b| number_of(a, over).total_cmp(&number_of(b, over))) else {
-        return Vec::new();
-    };
-    let Some(at) = place(experiment, assumptions, threshold, strongest, over) else { return Vec::new() };
+    let Some(strongest) = strongest(curve, over) else { return Vec::new() };
+    let Ok(Some(at)) = place(experiment, assumptions, threshold, strongest, over) else { return Vec::new() };
     let beside = [1.0 - BESIDE, 1.0 + BESIDE].map(|share| share * at).into_iter().filter(|value| within(*value));
     beside.map(|value| strongest.with(over, value)).collect()
 }
 
-/// The strength at a threshold, all else as in this case.
+/// Whatever keeps a case from being looked at fails as a row of the table, with its reason.
+struct NotKnown;
+
+/// The strength at a threshold, all else as in this case; `None` where there is no such place.
 fn place(
     experiment: &Experiment,
     assumptions: &Assumptions,
     threshold: Threshold,
     case: &Case,
     over: Parameter,
-) -> Option<f64> {
-    let recipe = experiment.recipe_of(case).ok()?;
-    let scene = rounded(recipe.resolve(assumptions).ok()?, &experiment.settings);
-    // Whatever keeps a case from being compiled fails as a row of the table, with its reason.
-    let system = compile(&scene).ok()?;
+) -> Result<Option<f64>, NotKnown> {
+    let strength = case.number(over).ok_or(NotKnown)?;
+    let recipe = experiment.recipe_of(case).map_err(|_| NotKnown)?;
+    let scene = rounded(recipe.resolve(assumptions).map_err(|_| NotKnown)?, &experiment.settings);
+    let system = compile(&scene).map_err(|_| NotKnown)?;
     let share = match threshold {
         Threshold::LiftOff => dynamics::lift_off(&system),
         Threshold::TwoImpacts => dynamics::two_impacts(&system),
         Threshold::CeilingGraze => dynamics::ceiling_graze(&system),
     };
-    Some(share.ok()?? * case.number(over)?)
+    Ok(share.map_err(|_| NotKnown)?.map(|share| share * strength))
 }

@@ -102,6 +102,26 @@ fn the_smallest_force_with_two_impacts_is_named_before_a_run_and_gets_points() {
 }
 
 #[test]
+fn a_refined_range_that_gets_no_points_around_its_threshold_is_told_beforehand() {
+    let outside = BETWEEN.replace("from: 1 N, to: 3 N", "from: 2 N, to: 3 N");
+    for (text, why) in [
+        (outside.as_str(), "`around: two_impacts` adds no points: its place, force = 1.938 N, lies outside the range"),
+        (
+            &BETWEEN.replace("around: two_impacts", "around: lift_off"),
+            "`around: lift_off` adds no points: this scene has no such",
+        ),
+    ] {
+        let study = Study::new(text);
+        for command in [&["show", "mine"][..], &["run", "--dry-run"]] {
+            let (_, said) = study.shotdamp(command);
+            assert!(said.contains(&format!("warning: {why}")), "{said}");
+        }
+    }
+    let (_, said) = Study::new(BETWEEN).shotdamp(&["show", "mine"]);
+    assert!(!said.contains("adds no points"), "{said}");
+}
+
+#[test]
 fn the_search_of_the_classic_finds_lift_off_where_the_points_are() {
     let classic = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/classics/experiments/lift-off-onset.yaml");
     let searched = Study::new(&fs::read_to_string(classic).unwrap()).run();
