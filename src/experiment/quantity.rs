@@ -37,6 +37,9 @@ pub enum Dimension {
     Density,
 }
 
+/// What is said of a comma in a number.
+pub(super) const NO_COMMA: &str = "write a decimal point, `30.5`, and thousands without a separator, `30000`";
+
 /// Why a text is not the quantity that is wanted. The message says what is wrong, [`QuantityError::help`] what would be
 /// right.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -44,6 +47,9 @@ pub enum QuantityError {
     /// No number in front.
     #[error("`{0}` is not a number")]
     NotANumber(String),
+    /// `30,5`, or `100,000`.
+    #[error("`{0}` has a comma in its number")]
+    Comma(String),
     /// NaN, infinite, or beyond the range of floating-point numbers.
     #[error("`{0}` is not a finite number")]
     NotFinite(String),
@@ -97,6 +103,7 @@ impl QuantityError {
                 let percent: f64 = text.strip_suffix('%')?.trim().parse().ok()?;
                 Some(format!("write the fraction: {}", percent / 100.0))
             }
+            Self::Comma(_) => Some(NO_COMMA.into()),
             Self::NotFinite(_) => None,
         }
     }
@@ -370,7 +377,11 @@ fn split_number(text: &str) -> Result<(Decimal<'_>, &str), QuantityError> {
             end += 1 + sign + length;
         }
     }
-    Ok((Decimal { mantissa, exponent }, text[end..].trim_start()))
+    let rest = text[end..].trim_start();
+    if rest.strip_prefix(',').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit())) {
+        return Err(QuantityError::Comma(text.into()));
+    }
+    Ok((Decimal { mantissa, exponent }, rest))
 }
 
 /// `N s/m`, `m/s^2`, `kg*m/s`: factors, at most one slash. The error is the symbol that is not known.

@@ -5,7 +5,7 @@
 use serde::de::DeserializeOwned;
 
 use super::diagnostic::{Findings, Span};
-use super::quantity::{Dimension, QuantityError, parse_in, parse_number, parse_quantity};
+use super::quantity::{Dimension, NO_COMMA, QuantityError, parse_in, parse_number, parse_quantity};
 use super::recipe::Parameter;
 use super::word::{closest, did_you_mean, from_word, words};
 use super::yaml::{Node, Value};
@@ -19,7 +19,10 @@ pub(super) fn unknown<T>(
     given: &str,
     known: &[&str],
 ) -> Option<T> {
-    findings.report(at, format!("{what} has no {role} `{given}`"), suggestion(findings, given, known))
+    // Between braces a comma ends the value: what follows it reads as a key.
+    let is_number = role == "key" && given.starts_with(|c: char| c.is_ascii_digit());
+    let help = if is_number { Some(NO_COMMA.into()) } else { suggestion(findings, given, known) };
+    findings.report(at, format!("{what} has no {role} `{given}`"), help)
 }
 
 /// Reports a word that is none of an enum's.

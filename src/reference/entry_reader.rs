@@ -10,14 +10,14 @@ use super::entry::{Check, Entry, NotJudged, ReferenceFile, Tolerance, ToleranceS
 use super::extraction::extraction;
 use super::mode_shape::ModeShape;
 use super::predicate::Predicate;
-use super::printed::Printed;
+use super::printed::{Printed, units_beside};
 use super::prose::Prose;
 use super::resonance::PrintedPeak;
 use super::selection::Selection;
 use super::tube::Curve;
 use super::verdict::Verdict;
 use crate::atomic::from_here;
-use crate::experiment::{At, Keys, Problems, Span, described, parsed, place, read, words_of};
+use crate::experiment::{At, Keys, Problems, Span, Value, described, parsed, place, read, words_of};
 
 /// Reads a reference file; its name is the id of its experiment.
 ///
@@ -188,7 +188,15 @@ impl<'t> Reader<'t> {
                 if keys.get("from").is_none() {
                     return keys.wants(&["from"], "where the counterpart of its `value` stands in the table");
                 }
-                Check::Value { published: value??, from: from??, tolerance: tolerance? }
+                let (published, from) = (value??, from??);
+                if let Some(unit) = from.unit().filter(|unit| published.converted_to(unit).is_none()) {
+                    let help = match unit {
+                        "" => "print it without a unit, or read another column".into(),
+                        unit => format!("print it in {}, or read another column", units_beside(unit).join(", ")),
+                    };
+                    return keys.get("value")?.report(published.unlike(unit), Some(help));
+                }
+                Check::Value { published, from, tolerance: tolerance? }
             }
             "peak" => {
                 let tolerance = tolerance?;
@@ -223,6 +231,10 @@ fn rules(keys: &Keys<'_>) {
 }
 
 fn read_tolerance(at: At<'_>) -> Option<Tolerance> {
+    if matches!(at, At::Node(node, _) if matches!(node.value, Value::Scalar(_))) {
+        let help = "write for example {relative: 0.05, reason: read off a figure}";
+        return at.report("a tolerance is a size, `relative` or `absolute`, and its `reason`", Some(help.into()));
+    }
     let keys = at.keys("a tolerance")?;
     let forms =
         [("relative", "Fraction of the published value"), ("absolute", "In the unit in which the value is printed")];

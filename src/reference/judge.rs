@@ -239,13 +239,8 @@ fn value(
         }
         Err(absence) => return Err(absence),
     };
-    let (datum, half_unit) = published.converted_to(&simulated.unit).ok_or_else(|| {
-        let column = match simulated.unit.as_str() {
-            "" => "a column without unit".into(),
-            unit => format!("a column in `{unit}`"),
-        };
-        Absence::Broken(format!("`{}` cannot be held against {column}", published.text()))
-    })?;
+    let unit = &simulated.unit;
+    let (datum, half_unit) = published.converted_to(unit).ok_or_else(|| Absence::Broken(published.unlike(unit)))?;
     // A feature that vanishes when an input is moved has no half range; it counts as a verdict that was not kept.
     let others: Vec<(&str, Option<Extracted>)> = moved(view, |variant| match from.take(variant) {
         Err(Absence::Nowhere(_)) => Ok(None),

@@ -23,7 +23,9 @@ pub struct Printed {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum PrintedError {
     /// Not a decimal number.
-    #[error("`{0}` is not a printed number: write digits as the study prints them, and a unit: `427.3 mm/s`, `1.516`")]
+    #[error(
+        "`{0}` is not a printed number: write digits as the study prints them, with a decimal point, and a unit: `427.3 mm/s`, `1.516`"
+    )]
     NotANumber(String),
     /// Not among the known units.
     #[error("`{0}` is not a unit that published values use here: {1}")]
@@ -46,6 +48,12 @@ fn unit(symbol: &str) -> Option<(&'static str, f64)> {
     UNITS.iter().find_map(|(dimension, units)| {
         units.iter().find(|(known, _)| *known == symbol).map(|(_, factor)| (*dimension, *factor))
     })
+}
+
+/// Units that a number can be printed in which is held against one in `symbol`.
+pub(super) fn units_beside(symbol: &str) -> Vec<&str> {
+    let of_kind = UNITS.iter().find(|(_, units)| units.iter().any(|(known, _)| *known == symbol));
+    of_kind.map_or_else(|| vec![symbol], |(_, units)| units.iter().map(|(known, _)| *known).collect())
 }
 
 impl Reads for Printed {}
@@ -115,6 +123,15 @@ impl Printed {
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text
+    }
+
+    /// That it is of another kind than numbers in `unit`.
+    pub(super) fn unlike(&self, unit: &str) -> String {
+        let column = match unit {
+            "" => "a column without unit".into(),
+            unit => format!("a column in `{unit}`"),
+        };
+        format!("`{}` cannot be held against {column}", self.text)
     }
 
     /// Value and u_D in another unit of the same dimension; `None` if it is of another dimension.

@@ -259,8 +259,14 @@ fn nothing_that_could_not_be_compared_reads_as_a_pass() {
         assert_eq!(judged.verdict, Verdict::Missing, "{table:?}");
         assert!(!judged.as_expected() && !judged.found.is_empty());
     }
-    let lengths = entry("value: \"3.4 mm\"\nfrom: {cell: {of: velocity_ratio}}");
-    let judged = judged_as(&lengths, TableState::Present(&good), &[]);
+    // The unit of a column that is known by its name is held against when the file is read.
+    let lengths = entry("value: \"3.4 mm\"\nfrom: {cell: {of: counted}}");
+    let counted = with(&|table| {
+        table.columns.push(float("counted", &[1.52, 1.52]));
+        table.columns.push(float("counted_num", &[0.0, 0.0]));
+        table.columns.push(float("counted_spread", &[0.0, 0.0]));
+    });
+    let judged = judged_as(&lengths, TableState::Present(&counted), &[]);
     assert_eq!(judged.verdict, Verdict::Missing);
     assert!(judged.found.contains("`3.4 mm` cannot be held against a column without unit"), "{}", judged.found);
     for state in [TableState::Stale, TableState::NotRun, TableState::Failed("no disk".into())] {

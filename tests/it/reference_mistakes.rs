@@ -57,7 +57,7 @@ fn all_mistakes_of_a_reference_file_come_at_once_each_with_its_place() {
 not_judged:
   - {place: s. 1, says: Six., raeson: lost}
 ";
-    let expected = "5:12 `about 2` is not a printed number: write digits as the study prints them, and a unit: `427.3 mm/s`, `1.516`
+    let expected = "5:12 `about 2` is not a printed number: write digits as the study prints them, with a decimal point, and a unit: `427.3 mm/s`, `1.516`
 6:5 an entry has no key `form` | did you mean `from`?
 10:20 `1 kg` is not in N | write the number alone, in N, or with a unit of that kind
 10:55 a range has no key `form` | did you mean `from`?
@@ -134,6 +134,42 @@ fn a_number_may_have_the_unit_of_its_column_or_one_of_that_kind() {
     }
     // What a column of words holds is a word, whatever it looks like.
     assert!(meaning("where: {sweep: 3, force: 3}, claim: {above: {of: x, level: 1}}").contains(r#""text":"3""#));
+}
+
+#[test]
+fn a_printed_number_of_another_kind_than_its_column_is_told_with_the_units_that_are_wanted() {
+    for (written, says) in [
+        (
+            "value: 2 mm, from: {cell: {of: rms_velocity}}",
+            "2:43 `2 mm` cannot be held against a column in `m/s` | print it in m/s, mm/s, or read another column",
+        ),
+        (
+            "value: \"2\", from: {argmax: {of: velocity_ratio, over: angular_frequency}}",
+            "2:43 `2` cannot be held against a column in `rad/s` | print it in Hz, rad/s, or read another column",
+        ),
+        (
+            "value: 2 mm, from: {ratio: {of: {cell: {of: rms_velocity}}, to: {number: 2}}}",
+            "2:43 `2 mm` cannot be held against a column without unit | print it without a unit, or read another column",
+        ),
+    ] {
+        assert_eq!(of(written), [says], "{written}");
+    }
+    for fine in ["value: 2 mm/s, from: {cell: {of: rms_velocity}}", "value: 2 mm, from: {cell: {of: x}}"] {
+        assert_eq!(of(fine), [""; 0], "{fine}");
+    }
+}
+
+#[test]
+fn a_tolerance_that_is_a_number_alone_is_answered_with_how_one_is_written() {
+    for tolerance in ["5 %", "0.05", "±2 mm"] {
+        let said = of(&format!("value: 2, from: {{number: 2}}, tolerance: {tolerance}"));
+        assert!(
+            said.len() == 1
+                && said[0].contains("`relative` or `absolute`")
+                && said[0].contains("{relative: 0.05, reason: "),
+            "{said:?}"
+        );
+    }
 }
 
 #[test]

@@ -916,6 +916,15 @@ fn a_mistake_is_answered_with_what_to_write() {
     use crate::desk::THREE_GAPS;
     let said = refusal(&THREE_GAPS.replace("mass_ratio: 0.05,", "mass_ratio: {asumed: zeta},"));
     assert!(said.contains("did you mean `assumed`?"), "{said}");
+    // Between braces the comma ends the value, unless there are quotes around it.
+    for mass in ["1,5 kg", "\"1,5 kg\""] {
+        let said = refusal(&THREE_GAPS.replace("mass: 1 kg", &format!("mass: {mass}")));
+        assert!(said.contains("write a decimal point"), "{said}");
+    }
+    let said = refusal(&THREE_GAPS.replace("mass: 1 kg", "mass: -1 kg"));
+    assert!(said.contains("a mass above zero is wanted"), "{said}");
+    let said = refusal(&THREE_GAPS.replace("frequency_ratio: 1", "angular_frequency: 30 rpm"));
+    assert!(said.contains("`rpm` is not a unit") && said.contains("write for example 31.6 rad/s or 5.03 Hz"), "{said}");
     let said = refusal(&THREE_GAPS.replace("ensemble: none", "ensemble: none, limit: {events: 1e30}"));
     assert!(said.contains("a whole number of events from 1 to 1e15"), "{said}");
     let said = refusal(&THREE_GAPS.replace("sensitivity: none", "sensitivity: [stop_length]"));
