@@ -62,6 +62,12 @@ pub fn explain(view: &EntryView<'_>) -> String {
         text += "\nNo assumption was moved for it.\n";
     } else {
         text += "\nOne assumption moved at a time, the most telling first\n";
+        if let Some(printed) = view.printed.filter(|_| view.moves.iter().any(|one| shift(view, one).is_some())) {
+            text += &format!(
+                "(what came out; how far the move shifts it, and how far off it is, in % of the published {})\n",
+                printed.text()
+            );
+        }
         text += &rows(view);
         text += &format!("\n{}", turns(view));
     }

@@ -37,6 +37,9 @@ pub enum Unreadable {
     /// A link without its file.
     #[error("it is a link to a file that does not exist; restore that file, or remove the link")]
     BrokenLink,
+    /// A link to a folder above it, or to itself.
+    #[error("it is a link that leads back to itself; remove it")]
+    Circle,
     /// A pipe, a socket or a device: opening one may wait for ever.
     #[error("it is a pipe or a device; put a file in its place, or remove it")]
     NoFile,
@@ -120,6 +123,8 @@ impl Texts {
             let name = format!("{name}/{file_name}");
             if endings.iter().any(|ending| file_name.ends_with(ending)) {
                 self.files.insert(name, read_text(&path));
+            } else if path.is_symlink() && leads_back(&path) {
+                self.files.insert(name, Err(Unreadable::Circle));
             } else if depth > 0 && path.is_dir() {
                 self.walk(&path, &name, endings, depth - 1)?;
             }
@@ -133,6 +138,12 @@ impl Texts {
             (name, bytes.as_ref().map_or_else(|error| hash(error.to_string().as_bytes()), |bytes| hash(bytes)))
         })
     }
+}
+
+/// Whether a link to a folder leads to one that it lies in.
+fn leads_back(link: &Path) -> bool {
+    let folder = link.parent().and_then(|folder| folder.canonicalize().ok());
+    folder.zip(link.canonicalize().ok()).is_some_and(|(folder, target)| folder.starts_with(target))
 }
 
 fn read_text(path: &Path) -> Bytes {
@@ -157,6 +168,8 @@ impl Unreadable {
         match error.kind() {
             io::ErrorKind::NotFound if path.is_symlink() => Self::BrokenLink,
             io::ErrorKind::PermissionDenied => Self::NoPermission,
+            // The system has no other reason to follow a link in vain that holds on all platforms.
+            _ if path.is_symlink() && path.canonicalize().is_err() => Self::Circle,
             _ => Self::Failed(error.to_string()),
         }
     }

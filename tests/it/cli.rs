@@ -271,6 +271,22 @@ fn results_of_an_unreadable_experiment_stay() {
     assert!(said.code == 0 && said.out.contains("2 experiments: 0 simulated"), "{}{}", said.out, said.err);
 }
 
+#[cfg(unix)]
+#[test]
+fn a_link_that_leads_back_is_one_error_and_all_other_experiments_are_read() {
+    let desk = simulated();
+    let link = |to: &str, name: &str| std::os::unix::fs::symlink(to, desk.layout.path(name)).unwrap();
+    link("../../experiments", "experiments/ch3/again");
+    link("self.yaml", "experiments/ch3/self.yaml");
+    let said = shotdamp(&desk, &[]);
+    for name in ["experiments/ch3/again", "experiments/ch3/self.yaml"] {
+        let told = format!("error: {name} cannot be read: it is a link that leads back to itself; remove it");
+        assert_eq!(said.err.matches(&told).count(), 1, "{}", said.err);
+    }
+    assert!(said.code == 2 && !said.err.contains("has the same id"), "{}", said.err);
+    assert!(said.out.contains("2 experiments: 0 simulated"), "{}", said.out);
+}
+
 /// What all experiments share is named as well, each time anew.
 #[test]
 fn an_unreadable_file_of_the_whole_study_is_an_error_each_time() {
@@ -384,9 +400,14 @@ fn explain_tells_what_an_entry_hangs_on_and_simulates_nothing() {
     let before = files(desk.folder.path());
     let said = shotdamp(&desk, &["explain", "ch3-stop/at-two"]);
     assert_eq!((said.code, said.err.as_str()), (0, ""));
-    for part in
-        ["ch3-stop/at-two: ", "stop_length: 60 mm → 50 mm", "impulse_factor: 2 → 1.8", "% off", "contact_damping_ratio"]
-    {
+    for part in [
+        "ch3-stop/at-two: ",
+        "how far off it is, in % of the published 1.75)",
+        "stop_length: 60 mm → 50 mm",
+        "impulse_factor: 2 → 1.8",
+        "% off",
+        "contact_damping_ratio",
+    ] {
         assert!(said.out.contains(part), "{part}: {}", said.out);
     }
     assert!(before == files(desk.folder.path()), "nothing was written");
