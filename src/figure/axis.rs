@@ -230,7 +230,10 @@ impl Axis {
             Labels::Powers { every } if digit == 1 && exponent.unsigned_abs().is_multiple_of(every) => {
                 power_of_ten(exponent)
             }
-            Labels::Digits(digits) if digits.contains(&digit) => plain(digit, exponent),
+            Labels::Digits(digits) if !digits.contains(&digit) => String::new(),
+            Labels::Digits(_) if range.is_plain() => plain(digit, exponent),
+            Labels::Digits(_) if digit == 1 => power_of_ten(exponent),
+            Labels::Digits(_) => format!("{digit}·{}", power_of_ten(exponent)),
             _ => String::new(),
         };
         let tick = |(digit, exponent)| Tick { at: range.share(along(digit, exponent)), label: label(digit, exponent) };
@@ -266,12 +269,10 @@ impl Decades {
         let count = |digits: &[u8]| self.places(digits).count();
         let powers = count(&[1]);
         let every = u32::try_from(powers.div_ceil(most.max(1))).unwrap_or(1).max(1);
-        // Beyond these a plain number is longer than its power of ten.
-        let is_plain = self.from > -5.0 && self.to < 5.0;
         if powers >= FEW && every == 1 && self.from > -2.5 && self.to < 3.5 {
             return Labels::Digits(&[1]);
         }
-        if powers >= FEW || !is_plain {
+        if powers >= FEW {
             return Labels::Powers { every };
         }
         let fits = |digits: &&&[u8]| (FEW..=most.max(FEW)).contains(&count(digits));
@@ -281,6 +282,11 @@ impl Decades {
             None if count(&EVERY_DIGIT) >= FEW => Labels::Digits(&EVERY_DIGIT),
             None => Labels::Even,
         }
+    }
+
+    /// Whether plain numbers are no longer than their powers of ten.
+    fn is_plain(self) -> bool {
+        self.from > -5.0 && self.to < 5.0
     }
 
     /// Digits and exponents that lie on the axis, in ascending order.

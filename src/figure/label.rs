@@ -72,8 +72,18 @@ fn within_sentence(label: &str) -> String {
     }
 }
 
+/// In cycles a second an angular frequency ω is the frequency ω/2π.
+fn in_cycles(label: &str) -> String {
+    let words = label.strip_prefix("angular ").unwrap_or(label);
+    match words.rsplit_once(' ') {
+        Some((words, symbol)) if symbol.starts_with('ω') => format!("{words} {symbol}/2π"),
+        _ => words.to_owned(),
+    }
+}
+
 /// The label with its unit, first letter in upper case: `Displacement (mm)`.
 pub(super) fn with_unit(label: &str, unit: &str) -> String {
+    let label = if unit == "Hz" { &in_cycles(label) } else { label };
     // A symbol keeps its case: x/L.
     let is_word = label.chars().nth(1).is_some_and(char::is_alphabetic);
     let label = if is_word { words::capitalised(label) } else { label.to_owned() };

@@ -6,7 +6,9 @@
 use std::collections::BTreeMap;
 
 use crate::experiment::{Band, Experiment, LineColour, Panel, START_LISTS, Stability};
+use crate::measure::Measure;
 use crate::table::{Column, Data, Table};
+use crate::text::words;
 
 use super::branch::Branches;
 use super::error::FigureError;
@@ -116,6 +118,18 @@ pub(super) struct Curve {
 }
 
 impl Curve {
+    /// Breaks its line between samples that one of these places lies between.
+    fn part_at(&mut self, places: &[f64]) {
+        let lies_between = |a: f64, b: f64| places.iter().any(|place| a < *place && *place < b);
+        let mut last = f64::NAN;
+        let parted = self.samples.drain(..).flat_map(|sample| {
+            let gap = lies_between(last, sample.x).then(Sample::gap);
+            last = sample.x;
+            gap.into_iter().chain([sample])
+        });
+        self.samples = parted.collect();
+    }
+
     /// True if no two of its points are joined.
     pub(super) fn is_of_single_points(&self) -> bool {
         let seen = |sample: &Sample| sample.x.is_finite() && sample.y.is_finite();
@@ -235,6 +249,7 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
                 }
                 _ => fill(&mut curve, source.figure, x, y, spread, &group.rows)?,
             }
+            curve.part_at(&group.others_between(x, &by, &groups));
             if curve.shows() {
                 curves.push(curve);
             }
@@ -367,6 +382,18 @@ fn fill(
 }
 
 impl Group {
+    /// Where rows lie that differ from these in what came out alone, as their kind of motion: no line leads past them.
+    fn others_between(&self, x: &Column, by: &[&Column], groups: &[Self]) -> Vec<f64> {
+        let is_outcome = |column: &Column| {
+            Measure::ALL.iter().any(|measure| measure.is_name() && *words::of_key(measure) == *column.name)
+        };
+        let beside = |other: &&Self| {
+            let differ = || by.iter().enumerate().filter(|(index, _)| other.words[*index] != self.words[*index]);
+            differ().next().is_some() && differ().all(|(_, column)| is_outcome(column))
+        };
+        groups.iter().filter(beside).flat_map(|other| &other.rows).filter_map(|&row| number(x, row)).collect()
+    }
+
     /// For each `by` column that varies: which of how many levels this group has.
     fn levels(&self, source: Source<'_>, groups: &[&Self]) -> Vec<Level> {
         let level = |index: usize| {

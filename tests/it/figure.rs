@@ -282,6 +282,25 @@ fn a_flat_or_tiny_curve_still_has_an_axis() {
     picture("flat", &limit_stop(), &figure(panels), &table, &[]);
 }
 
+/// Where the motion is another one nothing is known of this one.
+#[test]
+fn a_line_of_one_kind_of_motion_ends_where_rows_of_another_kind_begin() {
+    let kinds = ["periodic", "periodic", "chaotic", "chaotic", "periodic", "periodic"];
+    let table = Table::default()
+        .with(numbers("force_ratio", "f′", "", (1..=6).map(f64::from).collect()))
+        .with(texts("variant", ["baseline"; 6]))
+        .with(texts("motion", kinds))
+        .with(numbers("velocity_ratio", "ψ", "", vec![1.0, 1.1, 1.5, 1.6, 1.2, 1.3]));
+    let by_motion = Panel { by: vec!["motion".into()], ..panel("force_ratio", AxisScale::Linear, &["velocity_ratio"]) };
+    let svg = picture("by-motion", &limit_stop(), &figure(vec![by_motion]), &table, &[]).svg;
+    let strokes = |name: &str| {
+        let group = svg.split(&format!("<g data-name=\"{name}")).nth(1).unwrap().split("</g>").next().unwrap();
+        let line = group.split("<path").find(|path| path.contains("fill=\"none\"")).unwrap();
+        line.split(" d=\"").nth(1).unwrap().split('"').next().unwrap().matches('M').count()
+    };
+    assert_eq!([strokes("periodic"), strokes("chaotic")], [2, 1], "{svg}");
+}
+
 #[test]
 fn a_figure_that_cannot_be_drawn_says_why() {
     let experiment = limit_stop();
@@ -385,6 +404,10 @@ fn a_logarithmic_axis_has_three_numbers_at_least() {
     let (numbers, svg) = drawn(1e-4, 8.37e-2, "m");
     assert_eq!(numbers, [0.1, 1.0, 10.0]);
     assert!(svg.contains(">Gap h (mm)<"), "{svg}");
+    // Where a plain number is longer than its power of ten, within a decade.
+    let (_, svg) = drawn(2e-7, 9e-7, "");
+    let labels: Vec<String> = lines_of_text(&svg).into_iter().map(|(text, _)| text).collect();
+    assert!(["2·10⁻⁷", "5·10⁻⁷", "9·10⁻⁷"].iter().all(|label| labels.iter().any(|one| one == label)), "{labels:?}");
 }
 
 /// The resonance of [`a_part_of_the_axis_is_a_panel_of_its_own`].
@@ -401,6 +424,9 @@ fn resonance() -> Table {
 fn numbers_stand_in_the_unit_that_an_axis_names() {
     let mut one = panel("angular_frequency", AxisScale::Linear, &["velocity_ratio"]);
     one.x.unit = Some(AxisUnit { symbol: "Hz".into(), worth: std::f64::consts::TAU });
+    // In cycles a second an angular frequency is called by what it is there.
+    let svg = picture("hertz-by-symbol", &limit_stop(), &figure(vec![one.clone()]), &resonance(), &[]).svg;
+    assert!(svg.contains(">Frequency ω/2π (Hz)<"), "{svg}");
     one.x.label = Some("frequency".into());
     let svg = picture("hertz", &limit_stop(), &figure(vec![one]), &resonance(), &[]).svg;
     assert!(svg.contains(">Frequency (Hz)<"), "{svg}");
