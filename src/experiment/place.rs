@@ -73,7 +73,13 @@ impl SceneReader<'_> {
     /// The place under `at`: there must be one, except on a single mass, where there must be none.
     pub(super) fn at(&self, keys: &Keys<'_>, kind: &Kind, along: [Parameter; 2]) -> Option<PlaceRecipe> {
         let place = |at: At<'_>| self.place(at, kind, along);
-        keys.required_where(!kind.sides.is_empty(), AT, "Where on the structure", place).map(Option::unwrap_or_default)
+        keys.required_where(
+            !kind.sides.is_empty(),
+            AT,
+            "Where on the structure; on a plate x along its width and y along its length",
+            place,
+        )
+        .map(Option::unwrap_or_default)
     }
 
     /// Where the motion is observed unless the file says so.

@@ -122,7 +122,7 @@ measures! {
     FloorImpacts: "", "", "", "contacts made with the floor", Run, Own, Any;
     CeilingImpacts: "", "", "", "contacts made with the ceiling", Run, Own, Any;
     StopImpacts: "", "", "", "impacts on a limit stop", Run, Own, Any;
-    Separations: "", "", "", "contacts lost with the floor", Run, Own, Any;
+    Separations: "", "", "", "contacts lost with the floor; a rebound from a rigid floor is an impact alone, and counts as none", Run, Own, Any;
     FloorCompression: "m", "", "", "largest compression of the floor in the time history, of all dampers", Trace, Own, Any;
     CeilingCompression: "m", "", "", "largest compression of the ceiling in the time history, of all dampers", Trace, Own, Any;
     LastPeak: "m", "", "", "last crest of the displacement in the time history", Trace, Own, Any;
