@@ -184,7 +184,7 @@ fn an_interrupt_ends_every_command_that_simulates_and_a_limit_its_rows() {
         "reference/ch3/ch3-long.yaml",
         "
 entries:
-  - {id: some, place: s. 3, says: Some., value: '1.75', from: {cell: {of: rms_velocity, where: {gap_ratio: 50}}}}
+  - {id: some, place: s. 3, says: Some., value: 1.75 m/s, from: {cell: {of: rms_velocity, where: {gap_ratio: 50}}}}
 ",
     );
     let calibration = "title: T\nabout: A.\ncalibrate: {harmonic_reference: [base, loaded]}\nfit: [ch3-long/some]\n";
@@ -287,7 +287,7 @@ fn show_ends_soon_and_says_what_it_left_out() {
         let took: f64 = told.lines().last().unwrap().split_whitespace().map(seconds).sum();
         assert!(took < 2.0, "{took} s\n{told}");
         assert!(told.contains("takes more than 1.5 s") || told.contains("Fingerprint"), "{told}");
-        assert!(told.contains("ch3-long: ") && told.contains("\nScene of the first case ("), "{told}");
+        assert!(told.contains("ch3-long: ") && told.contains("\nScene"), "{told}");
     }
     let said = shotdamp(&study(THREE_GAPS), &["show", "ch3-long"]);
     assert!(!said.out.contains("Left out") && said.out.contains("Fingerprint"), "{}", said.out);

@@ -517,7 +517,7 @@ fn time_histories_are_judged_along_their_samples() {
     history("time", "s", &[52.302, 52.312, 52.500, 52.510]);
     history("particle_displacement", "m", &[0.1, -0.1, -0.1, 0.2]);
     history("rigid_floor", "m", &[0.0, 0.0, 0.0, 0.0]);
-    history("rms_acceleration", "", &[3.0, 2.0, 1.0, 1.0]);
+    history("rms_acceleration", "g", &[3.0, 2.0, 1.0, 1.0]);
     history("floor_displacement", "m", &[3.0, 2.0, 1.0, 1.0]);
     assert_eq!(
         verdict("claim: {paths_cross: {of: particle_displacement, other: rigid_floor}}", &table),
@@ -536,11 +536,11 @@ fn time_histories_are_judged_along_their_samples() {
     assert_eq!(verdict(impact, &table), Verdict::Reproduced);
     assert_eq!(verdict(&impact.replace("decreasing", "increasing"), &table), Verdict::Differs);
     // Halfway between the two samples where it passes the floor: 2.5 g.
-    let read = impact.replace("52.31 s", "2.5").replace("to: 52.31}", "to: 52.31, read: rms_acceleration}");
+    let read = impact.replace("52.31 s", "2.5 g").replace("to: 52.31}", "to: 52.31, read: rms_acceleration}");
     let at_impact = judged(&read, &table).comparison.unwrap();
     assert!(at_impact.error().abs() < 1e-12 && (at_impact.u_num - 0.5).abs() < 1e-12);
-    let lowest = "value: \"1.0\"\nfrom: {path_minimum: {of: rms_acceleration}}";
-    let highest = "value: \"3.0\"\nfrom: {path_maximum: {of: rms_acceleration}}";
+    let lowest = "value: \"1.0 g\"\nfrom: {path_minimum: {of: rms_acceleration}}";
+    let highest = "value: \"3.0 g\"\nfrom: {path_maximum: {of: rms_acceleration}}";
     assert_eq!([lowest, highest].map(|body| verdict(body, &table)), [Verdict::Reproduced; 2]);
     for body in [
         falls,

@@ -141,15 +141,15 @@ fn a_printed_number_of_another_kind_than_its_column_is_told_with_the_units_that_
     for (written, says) in [
         (
             "value: 2 mm, from: {cell: {of: rms_velocity}}",
-            "2:43 `2 mm` cannot be held against a column in `m/s` | print it in m/s, mm/s, or read another column",
+            "2:42 `2 mm` cannot be held against a column in `m/s` | print it in m/s, mm/s, or read another column",
         ),
         (
             "value: \"2\", from: {argmax: {of: velocity_ratio, over: angular_frequency}}",
-            "2:43 `2` cannot be held against a column in `rad/s` | print it in Hz, rad/s, or read another column",
+            "2:42 `2` cannot be held against a column in `rad/s` | print it in Hz, rad/s, or read another column",
         ),
         (
             "value: 2 mm, from: {ratio: {of: {cell: {of: rms_velocity}}, to: {number: 2}}}",
-            "2:43 `2 mm` cannot be held against a column without unit | print it without a unit, or read another column",
+            "2:42 `2 mm` cannot be held against a column without unit | print it without a unit, or read another column",
         ),
     ] {
         assert_eq!(of(written), [says], "{written}");
