@@ -17,7 +17,7 @@ use super::price::Price;
 use super::printed::Printed;
 use super::resonance::PrintedPeak;
 use super::tally::{Decision, Outcome};
-use super::text::{measured, significant};
+use super::text::measured;
 use super::verdict::{Comparison, Judged, Kind, Moved, Part, Role, Verdict};
 use super::view::{Absence, Reads, Tables, View};
 use crate::experiment::assumption_of;
@@ -265,11 +265,7 @@ fn value(
         let there = other.as_ref().map_or(Verdict::Differs, |other| {
             compare::verdict(&Comparison { simulated: other.value, ..comparison }, simulated.scale, fitted).0
         });
-        let in_unit = |other: &Extracted| {
-            let number = significant(other.value * comparison.in_unit_of(published), 4);
-            format!("{number} {}", published.unit()).trim_end().to_owned()
-        };
-        let found = other.as_ref().map_or_else(|| "none".into(), in_unit);
+        let found = other.as_ref().map_or_else(|| "none".into(), |other| comparison.in_words(other.value, published));
         Moved {
             variant: (*variant).into(),
             found,

@@ -6,6 +6,7 @@ use super::fit::Fit;
 use super::motion_behind::MotionBehind;
 use super::price::Price;
 use super::printed::Printed;
+use super::text::significant;
 
 /// What became of an entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -78,6 +79,13 @@ impl Comparison {
     /// What the table's unit is in the unit of the publication; a number of events has none.
     pub(crate) fn in_unit_of(&self, published: &Printed) -> f64 {
         if self.u_data > 0.0 { published.half_unit() / self.u_data } else { 1.0 }
+    }
+
+    /// Another number in the place of this one, in the unit of the publication: `6937 mm/s`.
+    #[must_use]
+    pub fn in_words(&self, simulated: f64, published: &Printed) -> String {
+        let number = significant(simulated * self.in_unit_of(published), 4);
+        format!("{number} {}", published.unit()).trim_end().to_owned()
     }
 
     /// |E|/u_val: how far it is off in units of its uncertainty.

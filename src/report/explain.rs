@@ -92,6 +92,14 @@ fn shift(view: &EntryView<'_>, one: &MoveView<'_>) -> Option<f64> {
     Some((one.moved.value? - comparison.simulated) / comparison.published.abs())
 }
 
+/// What came out, in the unit of the published number.
+fn found(view: &EntryView<'_>, moved: &Moved) -> String {
+    match (moved.value, view.judged.comparison.as_ref(), view.printed) {
+        (Some(value), Some(comparison), Some(printed)) => comparison.in_words(value, printed),
+        _ => moved.found.clone(),
+    }
+}
+
 fn rows(view: &EntryView<'_>) -> String {
     let mut moves: Vec<&MoveView<'_>> = view.moves.iter().collect();
     // A claim has no size: those that turn it come first.
@@ -113,7 +121,7 @@ fn rows(view: &EntryView<'_>) -> String {
         reasons.push(reason);
         rows.push([
             format!("{}: {from} → {to}", one.name),
-            if reason.is_some() { "no result".into() } else { one.moved.found.clone() },
+            if reason.is_some() { "no result".into() } else { found(view, one.moved) },
             shifted,
             off,
             word(one.moved.verdict).into(),
