@@ -67,7 +67,7 @@ impl Section {
             Self::Idle => "proof that effects are idle",
             Self::Assumptions => "assumptions",
             Self::Cases => "number of cases",
-            Self::Warnings => "warnings of long runs",
+            Self::Warnings => "warnings",
             Self::Fingerprint => "fingerprint",
         }
     }
@@ -147,7 +147,10 @@ fn make(layout: &Layout, id: &str, made: &Sender<Made>) -> Result<Exit, CliError
     if !ids.is_empty() && !ids.iter().any(|known| matches(id, known)) {
         return Err(no_match(id, &ids));
     }
-    let _ = made.send(Made::Untried(untried(&Loaded::untried(&texts, &|stem| matches(id, stem)))));
+    let known = untried(&Loaded::untried(&texts, &|stem| matches(id, stem)));
+    if !known.is_empty() {
+        let _ = made.send(Made::Untried(known));
+    }
     let study = Study::of(layout.clone(), texts, &|stem| matches(id, stem));
     let chosen = choose(&study, &Choice { patterns: vec![id.into()], folder: None })?;
     print_unread(chosen.unread.iter().copied());

@@ -284,7 +284,7 @@ impl Decades {
         }
     }
 
-    /// Whether plain numbers are no longer than their powers of ten.
+    /// Whether a plain number takes no more room than its power of ten.
     fn is_plain(self) -> bool {
         self.from > -5.0 && self.to < 5.0
     }

@@ -76,7 +76,7 @@ fn within_sentence(label: &str) -> String {
 fn in_cycles(label: &str) -> String {
     let words = label.strip_prefix("angular ").unwrap_or(label);
     match words.rsplit_once(' ') {
-        Some((words, symbol)) if symbol.starts_with('ω') => format!("{words} {symbol}/2π"),
+        Some((words, symbol)) if symbol.starts_with('ω') && !symbol.contains('/') => format!("{words} {symbol}/2π"),
         _ => words.to_owned(),
     }
 }

@@ -119,8 +119,12 @@ pub(super) struct Curve {
 
 impl Curve {
     /// Breaks its line between samples that one of these places lies between.
-    fn part_at(&mut self, places: &[f64]) {
-        let lies_between = |a: f64, b: f64| places.iter().any(|place| a < *place && *place < b);
+    fn part_at(&mut self, mut places: Vec<f64>) {
+        places.sort_by(f64::total_cmp);
+        let lies_between = |a: f64, b: f64| {
+            let beyond = places.partition_point(|place| *place <= a);
+            places.get(beyond).is_some_and(|place| *place < b)
+        };
         let mut last = f64::NAN;
         let parted = self.samples.drain(..).flat_map(|sample| {
             let gap = lies_between(last, sample.x).then(Sample::gap);
@@ -249,7 +253,7 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
                 }
                 _ => fill(&mut curve, source.figure, x, y, spread, &group.rows)?,
             }
-            curve.part_at(&group.others_between(x, &by, &groups));
+            curve.part_at(group.others_between(x, &by, &groups));
             if curve.shows() {
                 curves.push(curve);
             }

@@ -169,7 +169,8 @@ struct Best {
     unit: String,
 }
 
-/// `best: point 1, 3.77 at (0.5, 0.5); point 2, …`; a place that all of them share is named once.
+/// `best: point 1, 3.77 at (0.5, 0.5); point 2, …`; `best 3.77 at (0.5, 0.5)` of a single map; a place that all of them share is
+/// named once.
 fn best_in_words(found: &[Best]) -> String {
     let value = |value: f64, unit: &str| with_unit(value, 4, unit);
     if let [first, .., _] = found
@@ -180,7 +181,8 @@ fn best_in_words(found: &[Best]) -> String {
         return format!("best at {} in all {}, {low} to {high}", first.place, found.len());
     }
     let one = |one: &Best| format!("{}{} at {}", one.level, value(one.value, &one.unit), one.place);
-    format!("best: {}", found.iter().map(one).collect::<Vec<_>>().join("; "))
+    let each = found.iter().map(one).collect::<Vec<_>>().join("; ");
+    if found.iter().all(|one| one.level.is_empty()) { format!("best {each}") } else { format!("best: {each}") }
 }
 
 pub(crate) fn grows_towards(claim: &GrowsTowards, view: &View<'_>) -> Result<Decision, Absence> {

@@ -50,7 +50,7 @@ fn unit(symbol: &str) -> Option<(&'static str, f64)> {
     })
 }
 
-/// Units that a number can be printed in which is held against one in `symbol`.
+/// Units in which a number may be printed that is compared with one in `symbol`.
 pub(super) fn units_beside(symbol: &str) -> Vec<&str> {
     let of_kind = UNITS.iter().find(|(_, units)| units.iter().any(|(known, _)| *known == symbol));
     of_kind.map_or_else(|| vec![symbol], |(_, units)| units.iter().map(|(known, _)| *known).collect())

@@ -92,7 +92,7 @@ fn shift(view: &EntryView<'_>, one: &MoveView<'_>) -> Option<f64> {
     Some((one.moved.value? - comparison.simulated) / comparison.published.abs())
 }
 
-/// What came out, in the unit of the published number.
+/// What came out, in the unit of the published number; a move that was simulated just now comes without it.
 fn found(view: &EntryView<'_>, moved: &Moved) -> String {
     match (moved.value, view.judged.comparison.as_ref(), view.printed) {
         (Some(value), Some(comparison), Some(printed)) => comparison.in_words(value, printed),

@@ -1,4 +1,4 @@
-//! What the scenes of an experiment say of the length of its run before it begins: warnings where a bound tells.
+//! What is to be said of an experiment before it runs: warnings of what may take long or fail, and of thresholds that get no points.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use cpu_time::ThreadTime;
 
 use super::threshold::missed;
 use crate::dynamics::{Allowance, Limit};
-use crate::experiment::{Assumptions, Experiment};
+use crate::experiment::{Assumptions, Case, Experiment};
 use crate::measure::SolverChoice;
 use crate::scene::{Scene, Surface};
 use crate::text::number::significant;
@@ -36,18 +36,25 @@ pub fn forecast(experiment: &Experiment, assumptions: &Assumptions) -> Vec<Strin
         let recipes = experiment.recipe_of(case).and_then(|recipe| experiment.recipes_in(&recipe)).unwrap_or_default();
         // The settings of a mean hardly differ in what they take.
         let Some(scene) = recipes.first().and_then(|recipe| recipe.resolve(assumptions).ok()) else { continue };
-        let of_case = of_scene(experiment, &scene, &case.solvers);
-        for (cause, warning) in of_case {
+        for (cause, warning) in of_scene(experiment, &scene, &case.solvers) {
             if warnings.iter().all(|(known, _)| *known != cause) {
-                let place = case.describe();
-                let place = if place.is_empty() { String::new() } else { format!(" ({place})") };
-                warnings.push((cause, format!("{warning}{place}")));
+                warnings.push((cause, of_case(case, warning)));
             }
         }
     }
     let limit = Limit { time: PATIENCE, ..Limit::default() };
-    let missed = Allowance::new(limit).simulate(|| missed(experiment, assumptions));
-    warnings.into_iter().map(|(_, warning)| warning).chain(missed).collect()
+    let missed = Allowance::new(limit).simulate(|| missed(experiment, assumptions, PATIENCE));
+    warnings
+        .into_iter()
+        .map(|(_, warning)| warning)
+        .chain(missed.into_iter().map(|(case, warning)| of_case(&case, warning)))
+        .collect()
+}
+
+/// A warning with the case that it is about.
+fn of_case(case: &Case, warning: String) -> String {
+    let place = case.describe();
+    if place.is_empty() { warning } else { format!("{warning} ({place})") }
 }
 
 /// Of what a warning is.

@@ -151,7 +151,7 @@ pub(super) fn described(
         let column = of_key(parameter);
         let name = if parameter.symbol().is_empty() { column.replace('_', " ") } else { parameter.symbol().into() };
         let value = match (table.floats(&column), table.texts(&column)) {
-            (Some(numbers), _) if numbers[row].is_finite() => compact(numbers[row], 4),
+            (Some(numbers), _) if !numbers[row].is_nan() => compact(numbers[row], 4),
             (None, Some(words)) if !words[row].is_empty() => words[row].clone(),
             _ => return None,
         };

@@ -166,9 +166,9 @@ fn read_text(path: &Path) -> Bytes {
 impl Unreadable {
     fn of(path: &Path, error: &io::Error) -> Self {
         match error.kind() {
-            io::ErrorKind::NotFound if path.is_symlink() => Self::BrokenLink,
+            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory if path.is_symlink() => Self::BrokenLink,
             io::ErrorKind::PermissionDenied => Self::NoPermission,
-            // The system has no other reason to follow a link in vain that holds on all platforms.
+            // No portable kind of error names a loop of links; nothing else is left.
             _ if path.is_symlink() && path.canonicalize().is_err() => Self::Circle,
             _ => Self::Failed(error.to_string()),
         }

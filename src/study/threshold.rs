@@ -4,6 +4,10 @@
 //! The motions on one side of each are linear in the strength, so that one scene gives the threshold of a whole curve
 //! (`dynamics::lift_off`, `two_impacts`, `ceiling_graze`).
 
+use std::time::Duration;
+
+use cpu_time::ThreadTime;
+
 use super::refine::number_of;
 use crate::dynamics;
 use crate::experiment::{Assumptions, Case, Experiment, Parameter, Threshold, by_strength, curves};
@@ -56,18 +60,24 @@ pub fn thresholds(experiment: &Experiment, assumptions: &Assumptions) -> Vec<Thr
     found
 }
 
-/// The curves that shall have points beside a threshold and get none, each threshold once, in words.
-pub(super) fn missed(experiment: &Experiment, assumptions: &Assumptions) -> Vec<String> {
-    let mut told: Vec<(Threshold, String)> = Vec::new();
+/// The curves that shall have points beside a threshold and get none, each threshold once: the first of them at its
+/// greatest strength, and why. It looks for as long as `patience`, of processor time.
+pub(super) fn missed(experiment: &Experiment, assumptions: &Assumptions, patience: Duration) -> Vec<(Case, String)> {
+    let begun = ThreadTime::now();
+    let mut told: Vec<(Threshold, Case, String)> = Vec::new();
     for curve in curves(&experiment.cases, &experiment.refined) {
         let cases: Vec<Case> = curve.cases.iter().map(|&case| experiment.cases[case].clone()).collect();
         let over = curve.rule.over;
         let Some((threshold, strongest)) = curve.rule.around.zip(strongest(&cases, over)) else { continue };
+        if begun.elapsed() > patience {
+            break;
+        }
+        if told.iter().any(|(known, ..)| *known == threshold) {
+            continue;
+        }
         // A place that is not known yet may still be found.
         let Ok(at) = place(experiment, assumptions, threshold, strongest, over) else { continue };
-        if told.iter().any(|(known, _)| *known == threshold)
-            || !around(experiment, assumptions, threshold, over, &cases).is_empty()
-        {
+        if !around(experiment, assumptions, threshold, over, &cases).is_empty() {
             continue;
         }
         let why = match at {
@@ -76,9 +86,10 @@ pub(super) fn missed(experiment: &Experiment, assumptions: &Assumptions) -> Vec<
             }
             None => "this scene has no such place".into(),
         };
-        told.push((threshold, format!("`around: {}` adds no points: {why}", of_key(&threshold))));
+        let warning = format!("`around: {}` adds no points: {why}", of_key(&threshold));
+        told.push((threshold, strongest.clone(), warning));
     }
-    told.into_iter().map(|(_, warning)| warning).collect()
+    told.into_iter().map(|(_, case, warning)| (case, warning)).collect()
 }
 
 /// The case of a curve at its greatest strength.

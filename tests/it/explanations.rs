@@ -54,7 +54,7 @@ fn numbers_are_read_with_their_units_and_without_conditions() {
         ("true: 2.027 (h′ = 10), 3.378 (50)", vec!["2.027", "3.378"]),
         ("false: falls back by 27 % of the range up to f′ = 0.794 (2 % allowed)", vec!["27 %", "0.794"]),
         ("true: 13.01 m/(N s) > 10.32 m/(N s)", vec!["13.01 m/(N s)", "10.32 m/(N s)"]),
-        ("true: best point_1: 3.7 at (0.5, 0.5)", vec!["3.7"]),
+        ("true: best 3.7 at (0.5, 0.5)", vec!["3.7"]),
         ("up to 3.3e-14 % apart", vec!["3.3e-14 %"]),
     ] {
         assert_eq!(numbers(found), read, "{found}");

@@ -54,7 +54,7 @@ fn a_limit_that_was_set_too_low_costs_no_result_that_was_there() {
     let whole = desk.bytes("results/ch3-long.parquet");
     assert_eq!(shotdamp(&desk, &["run", "--force", "--row-limit", "5 events"]).code, 2);
     assert!(desk.bytes("results/ch3-long.parquet") != whole);
-    // With less than one event a row could not be simulated again.
+    // Within one event no row can be simulated: all of them come from the table that was put aside.
     assert_eq!(shotdamp(&desk, &["run", "--row-limit", "1 events"]).code, 0);
     assert!(desk.bytes("results/ch3-long.parquet") == whole);
     let said = shotdamp(&desk, &["run", "--force", "--row-limit", "5"]);

@@ -9,7 +9,7 @@ use shotdamp::measure::Evaluated;
 use shotdamp::scene::Excitation;
 use shotdamp::study::{
     Engine, Evaluate, Event, EventHandler, Heading, Held, IgnoreEvents, Inputs, Item, KnownRows, Loaded, Lock,
-    RowFailure, Simulation, Snapshot, Study, Summary, Texts,
+    RowFailure, Simulation, Snapshot, Study, Summary, Texts, row_in_words,
 };
 
 use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP, THREE_GAPS, shotdamp};
@@ -64,7 +64,6 @@ fn a_row_is_a_case_under_a_solver_in_a_variant() {
     assert_eq!(engine.simulations.into_inner(), 12 + 2 * 6 + 3 + grid_and_rounds);
 }
 
-/// The equation of the mass measure is lost: its readings are compared, though no scene depends on them.
 /// A residual of 0 would be read as a balance that closes to the last digit.
 #[test]
 fn of_a_row_that_nobody_audits_the_table_has_no_residual_and_the_row_counts() {
@@ -92,6 +91,17 @@ fn of_a_row_that_nobody_audits_the_table_has_no_residual_and_the_row_counts() {
     }
 }
 
+#[test]
+fn a_row_is_called_by_what_is_swept_also_where_that_is_infinite() {
+    let text = THREE_GAPS.replace("[10, 50, 90]", "[10, infinite]");
+    let desk = Desk::of_one("experiments/ch3/ch3-long.yaml", &text);
+    assert_eq!(shotdamp(&desk, &["run", "--tables"]).code, 0);
+    let (plan, table) = (desk.plan(), desk.table("ch3-long"));
+    let called = |row| row_in_words(&plan["ch3-long"].source.experiment, &table, row);
+    assert_eq!([0, 1].map(called), ["h′ = 10", "h′ = ∞"]);
+}
+
+/// The equation of the mass measure is lost: its readings are compared, though no scene depends on them.
 #[test]
 fn a_measure_that_can_be_read_in_several_ways_is_computed_for_each_of_them() {
     let desk = Desk::new();

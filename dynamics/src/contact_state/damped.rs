@@ -33,7 +33,7 @@ const LAST_STEP: f64 = 1e-8;
 const CONVERGED: f64 = 1e-13;
 /// And below this it is rounding, whatever was before.
 const NOTHING: f64 = 1e-15;
-/// Cheaper steps before those, as if no two other modes damped each other: of a few dashpots they leave 1e-5 or less.
+/// Cheaper steps before those, as if no two other modes damped each other: with a few dashpots they leave an error of 1e-5 of λ or less.
 const NEARER: usize = 2;
 /// σ below this share of its terms is that of two eigenvalues about to meet: a mode near critical damping. By a block for each, integrals
 /// of squares would be differences of terms that grow as 1/σ².

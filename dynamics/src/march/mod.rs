@@ -371,10 +371,10 @@ fn without(
     if far.is_empty() {
         return run(system, options, states);
     }
-    let has_walls = |system: &HybridSystem| system.particles.iter().any(Particle::has_walls);
     let less = reach::without(system, far);
     // What is known of a contact state depends on walls, not on stops nor on a ceiling that moves with its floor.
-    let states = if has_walls(&less) == has_walls(system) { states } else { States::of(&less) };
+    let mut both = less.particles.iter().zip(&system.particles);
+    let states = if both.all(|(one, other)| one.has_walls() == other.has_walls()) { states } else { States::of(&less) };
     run(&less, options, states)
 }
 
@@ -392,11 +392,12 @@ pub(crate) fn fundamental(
     options: &Options,
     states: States,
 ) -> Result<Fundamental, EngineError> {
-    let (_, tape) = taped(system, options, states, options.average as usize)?;
+    let nameless = Options { motion: false, ..options.clone() };
+    let (_, tape) = taped(system, &nameless, states, options.average as usize)?;
     Fundamental::of(system, &tape, options.average as usize)
 }
 
-/// Runs a system and keeps its tape, with the events of so many last cycles.
+/// Runs a system and keeps its tape, with the events of so many last cycles, or of as many as a name takes.
 pub(crate) fn taped(
     system: &HybridSystem,
     options: &Options,
@@ -404,7 +405,8 @@ pub(crate) fn taped(
     kept: usize,
 ) -> Result<(Response, Tape), EngineError> {
     let mut march = March::<Taped>::new(system, options, states)?;
-    march.tape = Tape::keeping(kept);
+    let is_named = options.motion || options.until == Until::Settled;
+    march.tape = Tape::keeping(if is_named { kept.max(motion::NAMING) } else { kept });
     march.all_cycles()?;
     let motion = if options.motion { Some(motion::name(system, &march.tape, options.average as usize)?) } else { None };
     let tape = std::mem::take(&mut march.tape);

@@ -71,7 +71,8 @@ impl Orbit {
 }
 
 fn last_of(system: &HybridSystem, options: &Options) -> Result<End, OrbitError> {
-    let (_, tape) = budget::within(|| march::taped(system, options, States::of(system), 1))?;
+    let nameless = Options { motion: false, ..options.clone() };
+    let (_, tape) = budget::within(|| march::taped(system, &nameless, States::of(system), 1))?;
     tape.ends.last().cloned().ok_or(OrbitError::NoCycle)
 }
 

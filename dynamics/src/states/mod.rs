@@ -55,7 +55,7 @@ struct Driven {
     /// What it kept when it was counted, and whether contact states have come since.
     counted: Cell<usize>,
     grown: Cell<bool>,
-    /// Numbers of what was built since it last forgot, those of the modes among them.
+    /// Numbers of flows when they were built, since it last forgot: about what it keeps.
     built: Cell<usize>,
     /// Some of them, each where its code leads.
     at_hand: RefCell<Vec<Option<AtHand>>>,
@@ -171,7 +171,7 @@ impl States {
         }
         self.0.grown.set(true);
         let is_one_more = old.is_none();
-        // Nobody but those that are known holds its modes any more.
+        // The old flow is gone, and with it its hold on its modes: the next look may take their room, too.
         let room = old.map_or_else(Room::default, Room::from);
         let modes = visit(
             &self.0.undriven.modes,

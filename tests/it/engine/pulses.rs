@@ -1,4 +1,5 @@
-//! Forces that stay on for a part of the cycle: what is counted by stretches, whichever of them is the short one.
+//! Forces that stay on for a part of the cycle: what is counted by stretches, whichever of them is the short one; and what is refused for
+//! want of a cycle or of an observed row.
 
 use shotdamp::dynamics::{
     Drive, EngineError, HybridSystem, Options, Orbit, OrbitError, StartState, Tick, TraceRequest, event_driven,

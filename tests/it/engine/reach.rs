@@ -2,12 +2,13 @@
 //! among them.
 
 use shotdamp::dynamics::{
-    Contact, EventKind, FarSurface, HybridSystem, Law, Method, Options, Response, StartState, Stop, TraceRequest,
-    event_driven, out_of_reach,
+    Contact, EventKind, Face, FarSurface, HybridSystem, Law, Matrix, Method, Options, Particle, Response, StartState,
+    Stop, TraceRequest, event_driven, out_of_reach,
 };
 use shotdamp::scene::compile;
 
-use super::arrays::{chain, cycles, particle, quiet};
+use super::arrays::{blows, chain, cycles, particle, quiet, spring, unit};
+use super::bench::GRAVITY;
 use super::drawn_scenes::any_drawn_scene;
 
 /// A run whose time history keeps every surface and all events.
@@ -117,4 +118,31 @@ pub(super) fn without_weight_no_height_is_out_of_reach() {
         system.gravity = gravity;
         assert!(out_of_reach(&system, &options).is_empty(), "{gravity:?}");
     }
+}
+
+#[test]
+fn a_run_that_cannot_reach_a_ceiling_leaves_nothing_behind_for_one_that_does() {
+    // Two dampers on a base, each below a ceiling that moves by itself; the second one's is out of reach of the weak blows.
+    let system = |impulse: f64| {
+        let face = |i: usize| Face { row: unit(3, i), law: spring(1000.0, 1.0) };
+        let below = |(wall, gap)| Particle { mass: 0.5, floor: face(0), ceiling: Some(face(wall)), gap };
+        HybridSystem {
+            mass: Matrix::diagonal(&[1.0, 0.2, 0.2]),
+            damping: Matrix::diagonal(&[3.0, 0.5, 0.5]),
+            stiffness: Matrix::diagonal(&[1000.0, 300.0, 400.0]),
+            particles: [(1, 0.002), (2, 2.0)].map(below).to_vec(),
+            force_row: unit(3, 0),
+            drive: blows(0.2, impulse),
+            observed_rows: vec![unit(3, 0)],
+            momentum_rows: vec![vec![1.0; 3]],
+            gravity: GRAVITY,
+        }
+    };
+    let (weak, strong, options) = (system(0.5), system(20.0), cycles(8));
+    assert_eq!(out_of_reach(&weak, &options).len(), 1);
+    let run = |system: &HybridSystem| event_driven(system, &options).expect("it runs");
+    let alone = std::thread::scope(|scope| scope.spawn(|| run(&strong)).join().expect("it runs"));
+    assert!(acts(&alone, 1, FarSurface::Ceiling));
+    run(&weak);
+    assert_eq!(run(&strong), alone);
 }

@@ -115,5 +115,6 @@ fn a_landing_lasts_beside_one_that_ends_its_bounces_at_the_same_instant() {
         events.into_iter().filter(|event| event.kind == EventKind::FloorContact).map(|event| event.lasts).collect()
     };
     let (ahead, behind): (Vec<bool>, Vec<bool>) = (lands([1e-10, 0.0]), lands([0.0, 1e-10]));
+    assert!(ahead.iter().any(|lasts| *lasts), "{ahead:?}");
     assert_eq!(ahead.iter().filter(|lasts| **lasts).count(), behind.iter().filter(|lasts| **lasts).count());
 }
