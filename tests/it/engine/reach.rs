@@ -144,5 +144,6 @@ fn a_run_that_cannot_reach_a_ceiling_leaves_nothing_behind_for_one_that_does() {
     let alone = std::thread::scope(|scope| scope.spawn(|| run(&strong)).join().expect("it runs"));
     assert!(acts(&alone, 1, FarSurface::Ceiling));
     run(&weak);
-    assert_eq!(run(&strong), alone);
+    // Compared as text: what was not looked for is NaN.
+    assert_eq!(format!("{:?}", run(&strong)), format!("{alone:?}"));
 }
