@@ -19,8 +19,6 @@ use crate::table::{BASELINE, Column, Data, Table};
 
 /// The record, within the study.
 const RECORD: &str = "reports/accuracy.json";
-/// The summary.
-const SUMMARY: &str = "reports/accuracy.md";
 /// The folder of pages and pictures.
 const PAGES: &str = "reports/accuracy";
 
@@ -112,7 +110,7 @@ pub fn publish_accuracy_summary(layout: &Layout, views: &[AccuracyView]) -> Resu
         atomic::write_if_changed(&layout.path("reports/accuracy.png"), &picture.png)?;
     }
     let text = accuracy_summary(views);
-    atomic::write(&layout.path(SUMMARY), text.as_bytes())?;
+    atomic::write(&layout.path("reports/accuracy.md"), text.as_bytes())?;
     Ok(text)
 }
 

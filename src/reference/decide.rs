@@ -173,7 +173,7 @@ fn equal(claim: &Equal, view: &View<'_>) -> Result<Decision, Absence> {
 }
 
 /// Numbers and how far apart they are: `161.9 rad/s and 162.0 rad/s, 0.07 % apart`, `3.375, identical`,
-/// `2 × 12.844 rad/s and 25.688 rad/s, identical`.
+/// `2 × 12.84 rad/s and 25.69 rad/s, identical`.
 fn difference(values: &[Extracted], sources: &[Extraction], within: &Within) -> String {
     let multiples = values.iter().zip(sources).map(|(one, source)| match source {
         Extraction::Times(times) if times.factor.fract() == 0.0 => {

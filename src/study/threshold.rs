@@ -77,7 +77,7 @@ pub(super) fn missed(experiment: &Experiment, assumptions: &Assumptions, patienc
         }
         // A place that is not known yet may still be found.
         let Ok(at) = place(experiment, assumptions, threshold, strongest, over) else { continue };
-        if !around(experiment, assumptions, threshold, over, &cases).is_empty() {
+        if at.is_some_and(|at| !beside(&cases, strongest, over, at).is_empty()) {
             continue;
         }
         let why = match at {
@@ -105,14 +105,19 @@ pub(super) fn around(
     over: Parameter,
     curve: &[Case],
 ) -> Vec<Case> {
+    let Some(strongest) = strongest(curve, over) else { return Vec::new() };
+    let Ok(Some(at)) = place(experiment, assumptions, threshold, strongest, over) else { return Vec::new() };
+    beside(curve, strongest, over, at)
+}
+
+/// A case of a curve moved to both sides of a place, as far as they lie within the range of the curve.
+fn beside(curve: &[Case], case: &Case, over: Parameter, at: f64) -> Vec<Case> {
     let within = |value: f64| {
         let numbers = || curve.iter().filter_map(|case| case.number(over));
         numbers().any(|x| x < value) && numbers().any(|x| x > value)
     };
-    let Some(strongest) = strongest(curve, over) else { return Vec::new() };
-    let Ok(Some(at)) = place(experiment, assumptions, threshold, strongest, over) else { return Vec::new() };
-    let beside = [1.0 - BESIDE, 1.0 + BESIDE].map(|share| share * at).into_iter().filter(|value| within(*value));
-    beside.map(|value| strongest.with(over, value)).collect()
+    let sides = [1.0 - BESIDE, 1.0 + BESIDE].map(|share| share * at).into_iter().filter(|value| within(*value));
+    sides.map(|value| case.with(over, value)).collect()
 }
 
 /// Whatever keeps a case from being looked at fails as a row of the table, with its reason.

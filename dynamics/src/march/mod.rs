@@ -344,7 +344,10 @@ impl<'a, E: Effects> March<'a, E> {
 
 /// Runs a system.
 pub(crate) fn march(system: &HybridSystem, options: &Options, states: States) -> Result<Response, EngineError> {
-    if options.motion || options.until == Until::Settled {
+    if options.motion {
+        return Ok(named(system, options, states)?.0);
+    }
+    if options.until == Until::Settled {
         return Ok(taped(system, options, states, motion::NAMING)?.0);
     }
     // A time history shows ceilings, whether anything meets them or not.
@@ -392,12 +395,11 @@ pub(crate) fn fundamental(
     options: &Options,
     states: States,
 ) -> Result<Fundamental, EngineError> {
-    let nameless = Options { motion: false, ..options.clone() };
-    let (_, tape) = taped(system, &nameless, states, options.average as usize)?;
+    let (_, tape) = taped(system, options, states, options.average as usize)?;
     Fundamental::of(system, &tape, options.average as usize)
 }
 
-/// Runs a system and keeps its tape, with the events of so many last cycles, or of as many as a name takes.
+/// Runs a system and keeps its tape, with the events of so many last cycles, or of as many as tell that it has settled.
 pub(crate) fn taped(
     system: &HybridSystem,
     options: &Options,
@@ -405,10 +407,15 @@ pub(crate) fn taped(
     kept: usize,
 ) -> Result<(Response, Tape), EngineError> {
     let mut march = March::<Taped>::new(system, options, states)?;
-    let is_named = options.motion || options.until == Until::Settled;
-    march.tape = Tape::keeping(if is_named { kept.max(motion::NAMING) } else { kept });
+    march.tape = Tape::keeping(if options.until == Until::Settled { kept.max(motion::NAMING) } else { kept });
     march.all_cycles()?;
-    let motion = if options.motion { Some(motion::name(system, &march.tape, options.average as usize)?) } else { None };
     let tape = std::mem::take(&mut march.tape);
-    Ok((Response { motion, ..march.finish()? }, tape))
+    Ok((march.finish()?, tape))
+}
+
+/// The same with its motion named, and with the events that this takes.
+pub(crate) fn named(system: &HybridSystem, options: &Options, states: States) -> Result<(Response, Tape), EngineError> {
+    let (response, tape) = taped(system, options, states, motion::NAMING)?;
+    let motion = Some(motion::name(system, &tape, options.average as usize)?);
+    Ok((Response { motion, ..response }, tape))
 }

@@ -4,7 +4,7 @@ use super::shot::{Shot, absolute};
 use super::{Orbit, OrbitError};
 use crate::budget;
 use crate::march;
-use crate::motion::{End, MotionKind, NAMING, Scale, candidates, closest};
+use crate::motion::{End, MotionKind, Scale, candidates, closest};
 use crate::options::{Options, StartState};
 use crate::states::States;
 use crate::system::HybridSystem;
@@ -42,8 +42,7 @@ impl Orbit {
     /// [`OrbitError`] with the reason: where the run ends in chaos, say.
     pub fn after(system: &HybridSystem, options: &Options) -> Result<Self, OrbitError> {
         repeats(system)?;
-        let named = Options { motion: true, ..options.clone() };
-        let (response, tape) = budget::within(|| march::taped(system, &named, States::of(system), NAMING))?;
+        let (response, tape) = budget::within(|| march::named(system, options, States::of(system)))?;
         let scale = Scale::new(system, &tape.reach);
         let chaotic = response.motion.filter(|motion| motion.kind == MotionKind::Chaotic);
         let mut error = chaotic.and_then(|motion| motion.exponent).map(|exponent| OrbitError::Chaotic { exponent });
@@ -71,8 +70,7 @@ impl Orbit {
 }
 
 fn last_of(system: &HybridSystem, options: &Options) -> Result<End, OrbitError> {
-    let nameless = Options { motion: false, ..options.clone() };
-    let (_, tape) = budget::within(|| march::taped(system, &nameless, States::of(system), 1))?;
+    let (_, tape) = budget::within(|| march::taped(system, options, States::of(system), 1))?;
     tape.ends.last().cloned().ok_or(OrbitError::NoCycle)
 }
 
