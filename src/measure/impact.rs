@@ -40,7 +40,7 @@ impl<'a> Impacts<'a> {
             Measure::FloorIntervalChange => {
                 self.intervals().last_chunk().map(|[before, after]: &[f64; 2]| (after - before).abs())
             }
-            Measure::FloorImpactSpeed => last.map(|event| -event.approach),
+            Measure::FloorImpactSpeed => last.map(|event| event.approach.abs()),
             Measure::FloorImpactPhase => last.map(|event| TAU / self.period * event.time),
             Measure::FloorReboundSpeed => self.last_contact().map(|contact| contact.end.departure),
             Measure::FloorRestitution => self

@@ -13,6 +13,8 @@ use crate::system::Law;
 
 /// Roundings of a distance that a bounce has to rise above.
 const SEVERAL: f64 = 16.0;
+/// A face that takes less than this share of a bounce's energy gives it back: no bounce dies away there within a run.
+const LEAST_LOSS: f64 = 1e-6;
 
 impl<E: Effects> March<'_, E> {
     /// A crossing of a particle that is at both faces, or comes to be.
@@ -200,8 +202,9 @@ impl<E: Effects> March<'_, E> {
         let push = (stiffness * here.gap).abs() + (self.damping_on(j, other) * here.rate).abs();
         let back = (push / particle.mass + self.system.gravity) * carried;
         let rounding = self.noise(j, side, here).max(self.noise(j, other, here));
-        let lasting = 1.0 - restitution * restitution;
-        STICKING_SPEED.max((SEVERAL * back * rounding / lasting.max(f64::EPSILON)).sqrt())
+        let loss = 1.0 - restitution * restitution;
+        let loss = if loss > LEAST_LOSS { loss } else { 1.0 };
+        STICKING_SPEED.max((SEVERAL * back * rounding / loss).sqrt())
     }
 
     /// Damping of a face, N s/m.

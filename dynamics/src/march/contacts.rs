@@ -223,10 +223,11 @@ impl<E: Effects> March<'_, E> {
         let contact = self.contacts[j];
         let here = self.particles[j];
         let at_rest = |relative: Relative| relative == Relative::default();
+        let pressed = contact.presses(particle);
         let side = match contact {
             Contact::Flight if at_rest(here) => Side::Floor,
             Contact::Flight if self.referred(j, Side::Ceiling).is_some_and(at_rest) => Side::Ceiling,
-            _ if contact.presses(particle) && at_rest(here) && !contact.is_between() => contact.side(),
+            _ if pressed && at_rest(here) && !contact.is_between() => contact.side(),
             _ => return Ok(()),
         };
         if let Law::Rigid { .. } = side.face(particle).law {
@@ -238,9 +239,14 @@ impl<E: Effects> March<'_, E> {
         let grip = self.grip(j, side, false);
         self.smooth[j] = grip.is_nothing();
         self.particles[j] = Relative::default();
-        if grip.holds() || particle.has_no_gap() {
+        if grip.holds() {
             self.changed = true;
-            self.contacts[j] = if grip.holds() { side.pressed() } else { side.opposite().pressed() };
+            self.contacts[j] = side.pressed();
+        } else if pressed {
+            self.let_go(j, side);
+        } else if particle.has_no_gap() {
+            self.changed = true;
+            self.contacts[j] = side.opposite().pressed();
         } else if side == Side::Ceiling {
             self.refer_to_floor(j);
         }

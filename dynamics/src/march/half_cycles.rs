@@ -124,7 +124,11 @@ impl<E: Effects> March<'_, E> {
         }
         self.half.sign = -self.half.sign;
         self.close_half_cycle();
-        self.renew()
+        self.renew()?;
+        if self.signals.of(bend).sum.value * self.half.sign < 0.0 {
+            self.half.stage = Stage::ThrownBack;
+        }
+        Ok(())
     }
 
     /// Goes on with the damping now in force.

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use shotdamp::dynamics::{EventKind, HybridSystem, Options, Until};
 use shotdamp::measure::{Measure, NamedRows, Request, Settings, SolverChoice, Subject, evaluate};
 use shotdamp::scene::{
-    ContactDamping, ContactEnd, Damper, Excitation, LimitStop, ParticleStart, Scene, Start, Surface, Walls,
+    ContactDamping, ContactEnd, Damper, Excitation, LimitStop, ParticleStart, PulseShape, Scene, Start, Surface, Walls,
 };
 
 use super::arrays::{blows, chain, cycles, go, particle, rigid};
@@ -77,6 +77,25 @@ fn a_particle_that_begins_on_its_floor_is_in_contact_from_the_start() {
         };
         let scene = Scene { start: Some(start), ..on_base(damper, silent(0.1)) };
         assert_eq!(measured(scene, 0, 2)[0], 1.0);
+    }
+}
+
+#[test]
+fn a_floor_that_is_pulled_away_from_a_particle_at_rest_on_it_has_lost_it() {
+    // Without a spring the base sinks at 2 m/s², and the particle falls at 1 m/s².
+    for floor in [
+        Surface::Rigid { restitution: 0.0 },
+        spring(1000.0, 0.0, ContactEnd::ZeroGap),
+        spring(1000.0, 3.0, ContactEnd::ZeroForce),
+    ] {
+        let what = format!("{floor:?}");
+        let shape = PulseShape::Rectangular;
+        let excitation = Excitation::PulseTrain { impulse: -0.2, period: 0.1, duration: 0.1, shape };
+        let start = Start { displacement: 0.0, velocity: 0.0, particles: vec![ParticleStart::OnFloor] };
+        let scene =
+            Scene::on_one_mass(base(1.0, 0.0, 0.0), 1.0, vec![Damper::between(floor, 0.1, f64::INFINITY)], excitation);
+        let scene = Scene { start: Some(start), ..scene };
+        assert_eq!(measured(scene, 0, 1)[0], 0.0, "{what}");
     }
 }
 

@@ -4,7 +4,8 @@
 //! a particle held by one of them may be met by the other.
 
 use shotdamp::dynamics::{
-    Contact, EngineError, EventKind, Face, HybridSystem, Law, Matrix, Options, Particle, StartState, event_driven,
+    Contact, EngineError, EventKind, Face, HybridSystem, Law, Matrix, Options, Particle, Response, StartState,
+    event_driven,
 };
 
 use super::arrays::{Dice, Plain, any_law, blows, chain, cycles, quiet, unit};
@@ -66,6 +67,26 @@ pub(super) fn between_walls_of_any_kind_momentum_and_energy_close_unless_both_fa
         }
     }
     assert!(events > 10_000 && squeezed < 12, "{events} events, {squeezed} squeezed");
+}
+
+#[test]
+pub(super) fn a_rigid_ceiling_that_takes_nothing_gives_a_particle_back_that_the_floor_presses() {
+    // Without any loss the energy of the impulse is all that there ever is: 0.5² / 2 J.
+    let law = |restitution| {
+        [Law::Resilient { stiffness: 1000.0, damping: 0.0, no_tension: false, stop: None }, Law::Rigid { restitution }]
+    };
+    let run = |restitution| {
+        let mut system = model_3([0.1, 100.0, 0.0], 0.1, 0.002, law(restitution));
+        system.damping = Matrix::diagonal(&[0.0, 0.0]);
+        (system.gravity, system.drive) = (0.0, blows(0.02, 0.5));
+        system.drive.repeats = false;
+        event_driven(&system, &cycles(40)).expect("one face yields")
+    };
+    let [own, nearly] = [1.0, 1.0 - 1e-12].map(run);
+    assert!(own.proof.events > 10 && own.proof.energy_residual < 1e-12, "{:?}", own.proof);
+    assert_eq!(own.proof.events, nearly.proof.events);
+    let rms = |response: &Response| response.window().rms_velocity();
+    within("RMS velocity", rms(&own) / rms(&nearly), 1.0, 1e-9);
 }
 
 #[test]
