@@ -39,10 +39,7 @@ pub struct ThresholdAlong {
 pub fn thresholds(experiment: &Experiment, assumptions: &Assumptions) -> Vec<ThresholdAlong> {
     let mut found: Vec<ThresholdAlong> = Vec::new();
     for (over, cases) in by_strength(experiment) {
-        let strongest = cases
-            .iter()
-            .map(|&case| &experiment.cases[case])
-            .reduce(|strongest, case| if case.number(over) > strongest.number(over) { case } else { strongest });
+        let strongest = strongest(cases.iter().map(|&case| &experiment.cases[case]), over);
         for &threshold in Threshold::ALL {
             let at = strongest.and_then(|case| place(experiment, assumptions, threshold, case, over).ok()?);
             let Some(at) = at else { continue };
@@ -68,7 +65,7 @@ pub(super) fn missed(experiment: &Experiment, assumptions: &Assumptions, patienc
     for curve in curves(&experiment.cases, &experiment.refined) {
         let cases: Vec<Case> = curve.cases.iter().map(|&case| experiment.cases[case].clone()).collect();
         let over = curve.rule.over;
-        let Some((threshold, strongest)) = curve.rule.around.zip(strongest(&cases, over)) else { continue };
+        let Some((threshold, strongest)) = curve.rule.around.zip(strongest(cases.iter(), over)) else { continue };
         if begun.elapsed() > patience {
             break;
         }
@@ -93,8 +90,8 @@ pub(super) fn missed(experiment: &Experiment, assumptions: &Assumptions, patienc
 }
 
 /// The case of a curve at its greatest strength.
-fn strongest(curve: &[Case], over: Parameter) -> Option<&Case> {
-    curve.iter().max_by(|a, b| number_of(a, over).total_cmp(&number_of(b, over)))
+fn strongest<'c>(curve: impl Iterator<Item = &'c Case>, over: Parameter) -> Option<&'c Case> {
+    curve.max_by(|a, b| number_of(a, over).total_cmp(&number_of(b, over)))
 }
 
 /// The cases on both sides of a threshold within the range of a curve, whose cases differ in this parameter alone.
@@ -105,7 +102,7 @@ pub(super) fn around(
     over: Parameter,
     curve: &[Case],
 ) -> Vec<Case> {
-    let Some(strongest) = strongest(curve, over) else { return Vec::new() };
+    let Some(strongest) = strongest(curve.iter(), over) else { return Vec::new() };
     let Ok(Some(at)) = place(experiment, assumptions, threshold, strongest, over) else { return Vec::new() };
     beside(curve, strongest, over, at)
 }
