@@ -416,7 +416,7 @@ impl Case<'_> {
             measured: measured.collect::<Result<_, _>>()?,
             proof: Proof::linear(),
             chaotic: false,
-            members: 1,
+            members: 0,
             motion: None,
             trace: shape.map(|shape| shape.columns).unwrap_or_default(),
             end: None,

@@ -109,7 +109,7 @@ pub struct Evaluated {
     pub proof: Proof,
     /// True where a kicked twin of the run ended elsewhere.
     pub chaotic: bool,
-    /// Runs averaged.
+    /// Runs averaged; 0 of a row that needs none.
     pub members: u32,
     /// The kind of motion, if asked for.
     pub motion: Option<MotionKind>,

@@ -9,7 +9,7 @@ use super::view::{RowsByTable, TableState, Tables};
 pub struct Price {
     /// Rows of tables, those with an assumption moved among them.
     pub rows: u64,
-    /// Runs behind them: one a row, or as many as its ensemble or its search has.
+    /// Runs behind them: as many as the ensemble or the search of each has, one as a rule, none of what needs no run.
     pub runs: u64,
     /// Events of these rows.
     pub events: u64,
@@ -24,10 +24,13 @@ impl Price {
             let [events, members, evaluations] =
                 ["events", "members", "evaluations"].map(|name| table.floats(name).unwrap_or_default());
             for row in rows {
-                let count = |column: &[f64]| column.get(*row).copied().filter(|count| *count > 0.0).unwrap_or(0.0);
+                let count = |column: &[f64]| column.get(*row).copied().filter(|count| *count >= 0.0);
                 price.rows += 1;
-                price.runs += whole(count(&members).max(count(&evaluations)).max(1.0));
-                price.events += whole(count(&events));
+                price.runs += whole(match (count(&members), count(&evaluations)) {
+                    (Some(members), None) => members,
+                    (members, evaluations) => members.unwrap_or(1.0).max(evaluations.unwrap_or(0.0)).max(1.0),
+                });
+                price.events += whole(count(&events).unwrap_or(0.0));
             }
         }
         price

@@ -263,7 +263,7 @@ impl<'a> View<'a> {
                 let value = number(&found.column.data, row).ok_or_else(|| broken("is no column of numbers"))?;
                 let (own, spread) = (error(errors.own, 0.0, row), error(errors.spread, 0.0, row));
                 let members = error(errors.members, 1.0, row);
-                let has_error = own >= 0.0 && spread >= 0.0 && members >= 1.0;
+                let has_error = own >= 0.0 && spread >= 0.0 && members >= 0.0;
                 // The time to what never happens, for one.
                 if value == f64::INFINITY && has_error {
                     return Err(Absence::Nowhere(format!("`{of}` is ∞ in row {}", row + 1)));
@@ -274,7 +274,7 @@ impl<'a> View<'a> {
                 if !(has_error && own.is_finite() && spread.is_finite()) {
                     return Err(broken("has no error of its own"));
                 }
-                Ok(Cell { value, run: own.max(spread / members.sqrt()), spread })
+                Ok(Cell { value, run: own.max(spread / members.max(1.0).sqrt()), spread })
             })
             .collect()
     }

@@ -165,11 +165,12 @@ fn entries(judged: &[Judged]) -> String {
     table.finish()
 }
 
-/// `124 runs, 30120 events`; nothing where nothing was run.
+/// `124 runs, 30120 events`; nothing where there is no row.
 pub(crate) fn rests_on(price: Price) -> String {
     let Price { runs, events, .. } = price;
     match price.rows {
         0 => String::new(),
+        _ if runs == 0 => "no run".into(),
         _ => format!("{}, {}", counted(runs as usize, "run", "runs"), counted(events as usize, "event", "events")),
     }
 }

@@ -15,18 +15,23 @@ pub(super) fn section(table: Option<&Table>) -> String {
     for solver in solvers(&baseline) {
         let of_solver = baseline.select(&baseline.rows_where("solver", &solver));
         let proof = Proof { table: &of_solver };
+        let rows = counted(of_solver.rows(), "row", "rows");
+        if proof.needs_no_run() {
+            text += &format!("- {}: {rows}, computed without a run.\n", words::of_solver(&solver));
+            continue;
+        }
         text += &format!(
-            "- {}: {}, events: {}, ties: {}; residual of momentum at most {}, of energy {}; smallest margin {}{}.\n",
+            "- {}: {rows}, events: {}, ties: {}; residual of momentum at most {}, of energy {}; smallest margin {}{}.\n",
             words::of_solver(&solver),
-            counted(of_solver.rows(), "row", "rows"),
             proof.total("events"),
             proof.total("ties"),
             proof.worst("momentum_residual"),
             proof.worst("energy_residual"),
             proof.smallest_margin(),
-            match proof.total("chaotic").as_str() {
-                "0" => String::new(),
-                chaotic => format!("; run as ensembles: {chaotic}, of up to {} members", proof.largest("members")),
+            match (proof.total("chaotic").as_str(), proof.largest("members").as_str()) {
+                ("0", _) => String::new(),
+                (chaotic, "1") => format!("; chaotic: {chaotic}, each a single run"),
+                (chaotic, most) => format!("; run as ensembles: {chaotic}, of up to {most} members"),
             }
         );
     }
@@ -78,6 +83,13 @@ struct Proof<'a> {
 }
 
 impl Proof<'_> {
+    /// All its numbers come from closed forms: there is no balance that could close.
+    fn needs_no_run(&self) -> bool {
+        let members = self.table.floats("members").unwrap_or_default();
+        let failed = |row: usize| self.table.texts("failure").is_some_and(|reasons| !reasons[row].is_empty());
+        !members.is_empty() && members.iter().enumerate().all(|(row, members)| *members == 0.0 && !failed(row))
+    }
+
     /// The finite numbers of a column.
     fn finite(&self, column: &str) -> Vec<f64> {
         self.table.floats(column).unwrap_or_default().into_iter().filter(|x| x.is_finite()).collect()

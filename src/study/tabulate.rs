@@ -78,7 +78,7 @@ pub(super) fn table(
     }
     let evaluated: Vec<Option<&Evaluated>> =
         outcomes.iter().map(|outcome| outcome.as_ref().ok().map(|row| &row.evaluated)).collect();
-    let audited = only(&evaluated, |row| jobs[row].is_audited());
+    let audited = audited(&evaluated, |row| jobs[row].is_audited());
     let [momentum, energy, others @ ..] = proof(&evaluated, &audited);
     columns.extend([momentum, energy]);
     columns.extend(doubt::residual_bounds(&audited));
@@ -102,9 +102,12 @@ pub(super) fn measured(measure: Measure, of: impl Fn(fn(&Measured) -> f64) -> Da
     ]
 }
 
-/// These rows, and nothing in the place of all others.
-pub(super) fn only<'a>(rows: &[Option<&'a Evaluated>], is_one: impl Fn(usize) -> bool) -> Vec<Option<&'a Evaluated>> {
-    rows.iter().enumerate().map(|(row, it)| it.filter(|_| is_one(row))).collect()
+/// Of these rows those that a run stands behind, and nothing in the place of all others.
+pub(super) fn audited<'a>(
+    rows: &[Option<&'a Evaluated>],
+    is_one: impl Fn(usize) -> bool,
+) -> Vec<Option<&'a Evaluated>> {
+    rows.iter().enumerate().map(|(row, it)| it.filter(|it| it.members > 0 && is_one(row))).collect()
 }
 
 /// What proves the rows, of which some are audited, in columns; what a row does not have is NaN, or 0 of a count.

@@ -119,7 +119,7 @@ pub(super) fn table(
     columns.extend(outcome(experiment, optimise, candidates));
     columns.push(texts("stopped", &|it| it.stopped.clone()));
     let evaluated: Vec<Option<&Evaluated>> = candidates.iter().map(|it| it.outcome.as_ref().ok()).collect();
-    let audited = tabulate::only(&evaluated, |row| candidates[row].variant == 0);
+    let audited = tabulate::audited(&evaluated, |row| candidates[row].variant == 0);
     columns.extend(tabulate::proof(&evaluated, &audited));
     columns.extend(doubt::residual_bounds(&audited));
     columns.push(texts("failure", &|it| it.failure()));

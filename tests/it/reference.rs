@@ -140,6 +140,8 @@ fn a_verdict_tells_what_was_simulated_for_it() {
     let below = format!("where: {{force_ratio: {{to: 2.5}}}}\n{OPTIMUM}");
     assert_eq!(judged(&below, &table).price, Price { rows: 11, runs: 11, events: 110 });
     assert_eq!(judged_as(&entry(CELL), TableState::NotRun, &[]).price, Price::default());
+    let still = variants(&[("baseline", 1.52)], 0.0, 0.0, 0);
+    assert_eq!(judged(CELL, &still).price, Price { rows: 1, runs: 0, events: 0 });
 }
 
 #[test]

@@ -91,6 +91,29 @@ fn of_a_row_that_nobody_audits_the_table_has_no_residual_and_the_row_counts() {
     }
 }
 
+/// Nor do natural frequencies have a balance, for which nothing runs.
+#[test]
+fn a_row_without_a_run_has_no_residual_and_its_page_speaks_of_none() {
+    let text = THREE_GAPS.replace("measure: [rms_velocity]", "measure: [natural_frequency]");
+    let desk = Desk::of_one("experiments/ch3/ch3-still.yaml", &text);
+    let entry = "{id: it, place: s. 3, says: It is 31., value: 31 rad/s, from: {cell: {of: natural_frequency, where: {gap_ratio: 50}}}}";
+    desk.put("reference/ch3/ch3-still.yaml", &format!("entries:\n  - {entry}\n"));
+    let said = shotdamp(&desk, &["run"]);
+    assert!(said.code != 2, "{}", said.err);
+    let table = desk.table("ch3-still");
+    for column in ["momentum_residual", "energy_residual"] {
+        assert!(table.floats(column).unwrap().iter().all(|residual| residual.is_nan()));
+    }
+    assert!((0..table.rows()).all(|row| !table.is_unbalanced(row)));
+    assert_eq!(table.floats("members").unwrap(), [0.0; 3]);
+    let page = String::from_utf8(desk.bytes("reports/ch3/ch3-still.md")).unwrap();
+    assert!(
+        page.contains("- event-driven: 3 rows, computed without a run.") && !page.contains("residual of"),
+        "{page}"
+    );
+    assert!(page.contains("| no run |"), "{page}");
+}
+
 #[test]
 fn a_row_is_called_by_what_is_swept_also_where_that_is_infinite() {
     let text = THREE_GAPS.replace("[10, 50, 90]", "[10, infinite]");
