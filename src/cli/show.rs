@@ -17,11 +17,11 @@ use super::select::{choose, matches, no_match};
 use super::thresholds;
 use crate::accuracy::{idle_cases, out_of_reach_in_words, unreached_cases};
 use crate::dynamics::{Allowance, Limit, Until, in_words};
-use crate::experiment::{AssumptionSheet, Continuation, Experiment, RowSource, value_in_words};
+use crate::experiment::{Assumptions, Continuation, Experiment, RowSource, value_in_words};
 use crate::measure::Settings;
 use crate::report::{LastVerdicts, VERDICTS, scenes};
 use crate::scene::{Scene, effects};
-use crate::study::{Item, Layout, Loaded, Source, State, Study, Texts, forecast};
+use crate::study::{Item, Layout, State, Study, Texts, Untried, forecast};
 use crate::text::number::quantity;
 use crate::text::words::{counted, of_key};
 
@@ -75,7 +75,7 @@ impl Section {
 
 /// What the thread has made.
 enum Made {
-    /// What is known of all experiments before their cases are tried, in the place of their sections.
+    /// What is known of one more experiment before its cases are tried, in the place of its sections.
     Untried(String),
     /// The files are read; so many experiments are to be described.
     Read { experiments: u32 },
@@ -98,10 +98,10 @@ pub(super) fn show(layout: &Layout, id: &str) -> Result<Exit, CliError> {
         });
     }
     let mut texts: BTreeMap<(usize, Section), String> = BTreeMap::new();
-    let (mut untried, mut read) = (None, None);
+    let (mut untried, mut read) = (Vec::new(), None);
     let exit = loop {
         match inbox.recv_timeout(LOOK) {
-            Ok(Made::Untried(text)) => untried = Some(text),
+            Ok(Made::Untried(text)) => untried.push(text),
             Ok(Made::Read { experiments }) => read = Some(experiments),
             Ok(Made::Section(index, section, text)) => drop(texts.insert((index, section), text)),
             Ok(Made::All(exit)) => break exit?,
@@ -109,7 +109,7 @@ pub(super) fn show(layout: &Layout, id: &str) -> Result<Exit, CliError> {
             Err(RecvTimeoutError::Timeout) => {}
         }
         if begun.elapsed() > BOUND * read.unwrap_or(1).max(1) {
-            break if read.is_some() || untried.is_some() { Exit::AsExpected } else { Exit::CouldNot };
+            break if read.is_some() || !untried.is_empty() { Exit::AsExpected } else { Exit::CouldNot };
         }
     };
     let mut text = String::new();
@@ -128,11 +128,11 @@ pub(super) fn show(layout: &Layout, id: &str) -> Result<Exit, CliError> {
     }
     if read.is_none() {
         let bound = in_words(BOUND);
-        match untried {
-            Some(known) => {
-                text = known + &format!("\nLeft out, since checking all cases takes more than {bound}: all else\n")
-            }
-            None => print_error(&format!("error: {id}: reading it takes more than {bound}\n")),
+        if untried.is_empty() {
+            print_error(&format!("error: {id}: reading it takes more than {bound}\n"));
+        } else {
+            text = untried.join("\n")
+                + &format!("\nLeft out, since checking all cases takes more than {bound}: all else\n");
         }
     }
     print(&text)?;
@@ -147,11 +147,8 @@ fn make(layout: &Layout, id: &str, made: &Sender<Made>) -> Result<Exit, CliError
     if !ids.is_empty() && !ids.iter().any(|known| matches(id, known)) {
         return Err(no_match(id, &ids));
     }
-    let known = untried(&Loaded::untried(&texts, &|stem| matches(id, stem)));
-    if !known.is_empty() {
-        let _ = made.send(Made::Untried(known));
-    }
-    let study = Study::of(layout.clone(), texts, &|stem| matches(id, stem));
+    let hear = |one: &Untried<'_>| drop(made.send(Made::Untried(untried(one))));
+    let study = Study::of(layout.clone(), texts, &|stem| matches(id, stem), &hear);
     let chosen = choose(&study, &Choice { patterns: vec![id.into()], folder: None })?;
     print_unread(chosen.unread.iter().copied());
     let experiments = u32::try_from(chosen.items.len()).unwrap_or(u32::MAX);
@@ -169,14 +166,10 @@ fn make(layout: &Layout, id: &str, made: &Sender<Made>) -> Result<Exit, CliError
     Ok(if chosen.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })
 }
 
-/// The cheapest sections of all experiments.
-fn untried(loaded: &Loaded) -> String {
-    let of_one = |source: &Source| {
-        let experiment = &source.experiment;
-        let cases = counted(experiment.cases.len(), "case", "cases");
-        heading(source) + &first_scene(&loaded.sheet, experiment) + &format!("\nCases\n  {cases}\n")
-    };
-    loaded.sources.iter().map(of_one).collect::<Vec<_>>().join("\n")
+/// The cheapest sections of an experiment.
+fn untried(&Untried { experiment, file, assumptions }: &Untried<'_>) -> String {
+    let cases = counted(experiment.cases.len(), "case", "cases");
+    heading(experiment, file) + &first_scene(assumptions, experiment) + &format!("\nCases\n  {cases}\n")
 }
 
 /// A section; `all` keeps the scenes of all cases once they are there.
@@ -189,8 +182,8 @@ fn describe(
 ) -> String {
     let experiment = &item.source.experiment;
     match section {
-        Section::Heading => heading(&item.source),
-        Section::Scene => first_scene(&study.sheet, experiment),
+        Section::Heading => heading(experiment, &item.source.file),
+        Section::Scene => first_scene(&study.sheet.assumptions(), experiment),
         Section::Effects => in_force(all.get_or_insert_with(|| scenes(study, experiment))),
         Section::Idle => {
             let idle = idle(experiment, all.get_or_insert_with(|| scenes(study, experiment)));
@@ -213,7 +206,7 @@ fn describe(
     }
 }
 
-fn heading(Source { experiment, file }: &Source) -> String {
+fn heading(experiment: &Experiment, file: &str) -> String {
     let source = &experiment.source;
     let section = source.section.as_ref().map(|section| format!("s. {section}"));
     let place: Vec<String> = section.into_iter().chain(source.shown_in.iter().cloned()).collect();
@@ -221,10 +214,9 @@ fn heading(Source { experiment, file }: &Source) -> String {
     format!("{}: {}\n{place}{}\n\n{}\n", experiment.id, experiment.title, file, experiment.about)
 }
 
-fn first_scene(sheet: &AssumptionSheet, experiment: &Experiment) -> String {
-    let assumptions = sheet.assumptions();
+fn first_scene(assumptions: &Assumptions, experiment: &Experiment) -> String {
     let first = experiment.cases.first();
-    let scene = first.and_then(|case| experiment.recipe_of(case).ok()?.resolve(&assumptions).ok());
+    let scene = first.and_then(|case| experiment.recipe_of(case).ok()?.resolve(assumptions).ok());
     let case = first.map(|case| case.describe()).filter(|case| !case.is_empty());
     let mut text = format!("\nScene{}\n", case.map_or_else(String::new, |case| format!(" of the first case ({case})")));
     for line in scene.as_ref().map(Scene::describe).unwrap_or_default() {

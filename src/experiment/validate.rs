@@ -40,14 +40,14 @@ pub fn parse_experiment(
     text: &str,
     assumptions: &Assumptions,
 ) -> Result<Experiment, Problems> {
-    parse_with(id, file, text, assumptions, Cases::ToTry)
+    parse_with(id, file, text, assumptions, Cases::ToTry(&|_| {}))
 }
 
 /// Whether the scenes of an experiment's cases are known to resolve.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Cases {
-    /// They are not.
-    ToTry,
+#[derive(Clone, Copy)]
+pub(crate) enum Cases<'t> {
+    /// They are not. To try them may take longest: this hears of the experiment before.
+    ToTry(&'t dyn Fn(&Experiment)),
     /// This very text was read before, with these assumptions.
     Tried,
 }
@@ -58,7 +58,7 @@ pub(crate) fn parse_with(
     file: &str,
     text: &str,
     assumptions: &Assumptions,
-    cases: Cases,
+    cases: Cases<'_>,
 ) -> Result<Experiment, Problems> {
     let findings = Findings::default();
     let experiment = read_tree(text, &findings).and_then(|root| {
@@ -80,7 +80,7 @@ pub fn experiment_schema(sheet: &AssumptionSheet) -> serde_json::Value {
 struct ExperimentReader<'t> {
     findings: &'t Findings,
     assumptions: &'t Assumptions,
-    cases: Cases,
+    cases: Cases<'t>,
 }
 
 impl<'t> ExperimentReader<'t> {
@@ -284,8 +284,11 @@ impl<'t> ExperimentReader<'t> {
                 self.findings,
             ),
         };
-        if self.cases == Cases::Tried {
-            return Some(experiment);
+        match self.cases {
+            Cases::Tried => return Some(experiment),
+            // What is shown of an experiment with mistakes is the mistakes.
+            Cases::ToTry(_) if self.findings.any() => {}
+            Cases::ToTry(hear) => hear(&experiment),
         }
         let parts = scene.parts;
         checks.scenes(&experiment, |parameter, part| {

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use super::layout::{ASSUMPTIONS, STUDY, folder_of, stem};
 use super::texts::{Bytes, Texts, Unreadable};
 use crate::experiment::{
-    AboutStudy, AssumptionSheet, Cases, Columns, Experiment, ExperimentId, IdError, Problems, parse_assumptions,
-    parse_study, parse_with,
+    AboutStudy, AssumptionSheet, Assumptions, Cases, Columns, Experiment, ExperimentId, IdError, Problems,
+    parse_assumptions, parse_study, parse_with,
 };
 use crate::text::utf8::{NotUtf8, decode};
 
@@ -41,6 +41,17 @@ impl Source {
     pub fn folder(&self) -> &str {
         folder_of(&self.file)
     }
+}
+
+/// An experiment that was read, before its cases are tried, which takes longest.
+#[derive(Debug, Clone, Copy)]
+pub struct Untried<'a> {
+    /// The experiment.
+    pub experiment: &'a Experiment,
+    /// Its file within the study.
+    pub file: &'a str,
+    /// What it is read with.
+    pub assumptions: &'a Assumptions,
 }
 
 /// A file that is not what it should be.
@@ -139,18 +150,18 @@ impl Loaded {
     /// Reads all experiments among `texts`.
     #[must_use]
     pub fn from_texts(texts: &Texts) -> Self {
-        Self::chosen(texts, &|_| true, &|_| Cases::ToTry)
+        Self::chosen(texts, &|_| true, &|_| false, &|_| {})
     }
 
-    /// Reads the assumptions, and the experiments whose ids are `wanted`, without trying their cases, which takes longest.
+    /// Reads the assumptions, and the experiments whose ids are `wanted`; the cases of some were `tried` before, of the others `hear`
+    /// is told before theirs are.
     #[must_use]
-    pub fn untried(texts: &Texts, wanted: &dyn Fn(&str) -> bool) -> Self {
-        Self::chosen(texts, wanted, &|_| Cases::Tried)
-    }
-
-    /// Reads the assumptions, and the experiments whose ids are `wanted`; the cases of some were tried before.
-    #[must_use]
-    pub(super) fn chosen(texts: &Texts, wanted: &dyn Fn(&str) -> bool, cases: &dyn Fn(&str) -> Cases) -> Self {
+    pub(super) fn chosen(
+        texts: &Texts,
+        wanted: &dyn Fn(&str) -> bool,
+        tried: &dyn Fn(&str) -> bool,
+        hear: &dyn Fn(&Untried<'_>),
+    ) -> Self {
         let mut loaded = Self::default();
         match shared(texts, STUDY, parse_study) {
             Ok(about) => loaded.about = about,
@@ -174,7 +185,9 @@ impl Loaded {
         for (file, bytes) in experiments() {
             let source = text(file, bytes).and_then(|text| {
                 let id = identify(file, &files_by_stem)?;
-                let experiment = parse_with(&id, file, text, &assumptions, cases(&id.0)).map_err(Refused::Text)?;
+                let hear = |experiment: &Experiment| hear(&Untried { experiment, file, assumptions: &assumptions });
+                let cases = if tried(&id.0) { Cases::Tried } else { Cases::ToTry(&hear) };
+                let experiment = parse_with(&id, file, text, &assumptions, cases).map_err(Refused::Text)?;
                 Ok(Source { experiment, file: file.clone() })
             });
             match source {

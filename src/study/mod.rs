@@ -74,7 +74,7 @@ pub use layout::{
     ASSUMPTIONS, Layout, STUDY, calibration_journal_name, folder_of, journal_name, record_name, stem, table_name,
 };
 pub use left_out::{LeftOutRecord, PredictedErrors};
-pub use load::{Loaded, Refused, Source};
+pub use load::{Loaded, Refused, Source, Untried};
 pub use machine::Machine;
 pub use motions::{Deviation, Motions, Settling, row_in_words};
 pub use open::Study;

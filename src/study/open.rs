@@ -6,9 +6,11 @@ use rayon::prelude::*;
 
 use super::left_out::{LeftOutRecord, PredictedErrors};
 use super::load::text;
-use crate::experiment::{AboutStudy, AssumptionSheet, Calibration, Cases, Problems, RowLimit, parse_calibration};
+use crate::experiment::{AboutStudy, AssumptionSheet, Calibration, Problems, RowLimit, parse_calibration};
 use crate::reference::{Check, KnownTables, Prose, ReferenceFile, Role, parse_reference};
-use crate::study::{ASSUMPTIONS, Item, Layout, Loaded, Refused, STUDY, Sensitivity, Summary, Texts, Used, stem};
+use crate::study::{
+    ASSUMPTIONS, Item, Layout, Loaded, Refused, STUDY, Sensitivity, Summary, Texts, Untried, Used, stem,
+};
 
 /// The study: what was read and planned, and the experiments that are up to date and need not be.
 #[derive(Debug)]
@@ -59,17 +61,23 @@ impl Study {
     #[must_use]
     pub fn beside(layout: Layout, texts: Texts, known: BTreeMap<String, Summary>, used: Used) -> Self {
         let mut study = Self::empty(layout, texts);
-        study.plan(&|id| !known.contains_key(id), used);
+        study.plan(&|id| !known.contains_key(id), used, &|_| {});
         study.known = known;
         study.plan_dependents();
         study.complete()
     }
 
-    /// Reads and plans the experiments whose ids are `wanted`, as if there were no others.
+    /// Reads and plans the experiments whose ids are `wanted`, as if there were no others; `hear` is told of each before its cases
+    /// are tried.
     #[must_use]
-    pub fn of(layout: Layout, texts: Texts, wanted: &(dyn Fn(&str) -> bool + Sync)) -> Self {
+    pub fn of(
+        layout: Layout,
+        texts: Texts,
+        wanted: &(dyn Fn(&str) -> bool + Sync),
+        hear: &dyn Fn(&Untried<'_>),
+    ) -> Self {
         let mut study = Self::empty(layout, texts);
-        study.plan(wanted, Used::new());
+        study.plan(wanted, Used::new(), hear);
         study.complete()
     }
 
@@ -113,11 +121,10 @@ impl Study {
     }
 
     /// Reads and plans the experiments whose ids are `wanted`; what the others depend on is worked out.
-    fn plan(&mut self, wanted: &(dyn Fn(&str) -> bool + Sync), mut used: Used) {
+    fn plan(&mut self, wanted: &(dyn Fn(&str) -> bool + Sync), mut used: Used, hear: &dyn Fn(&Untried<'_>)) {
         let Self { texts, layout, unread, .. } = self;
         // What an experiment depends on is known where nothing of it has changed.
-        let cases = |id: &str| if used.contains_key(id) { Cases::Tried } else { Cases::ToTry };
-        let mut loaded = Loaded::chosen(texts, wanted, &cases);
+        let mut loaded = Loaded::chosen(texts, wanted, &|id| used.contains_key(id), hear);
         unread.append(&mut loaded.refused);
         let references = references(texts, &loaded, wanted, unread);
         let items: Vec<Item> = loaded
@@ -157,7 +164,7 @@ impl Study {
             .collect();
         if !lost.is_empty() {
             self.known.retain(|id, _| !lost.contains_key(id));
-            self.plan(&|id| lost.contains_key(id), lost.clone());
+            self.plan(&|id| lost.contains_key(id), lost.clone(), &|_| {});
         }
     }
 

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::canonical::hash;
 use super::layout::{ASSUMPTIONS, Layout, STUDY, stem};
@@ -11,7 +11,7 @@ use crate::atomic::FileError;
 
 /// No hand-written experiment is longer; a longer file is refused before it is read.
 const LONGEST_TEXT: u64 = 4 << 20;
-/// Folders in folders below `experiments/`; ends a walk that a link leads in a circle.
+/// Folders in folders below `experiments/`.
 const DEEPEST: u32 = 8;
 
 /// `study.yaml`, every YAML file under `experiments/`, `reference/` and `calibrations/`, and what calibrations recorded, as it stood at
@@ -67,7 +67,7 @@ impl Texts {
         {
             let path = layout.path(folder);
             if path.is_dir() {
-                texts.walk(&path, folder, endings, DEEPEST)?;
+                texts.read_below(Folder { path, name: folder.into(), depth: DEEPEST }, endings)?;
             }
         }
         let about = layout.path(STUDY);
@@ -111,22 +111,46 @@ impl Texts {
         self.files.keys().filter(|name| Self::is_of_experiment(name)).map(|name| stem(name)).collect()
     }
 
-    fn walk(&mut self, folder: &Path, name: &str, endings: &[&str], depth: u32) -> Result<(), FileError> {
-        let fail = |source| FileError::new("list", folder, source);
-        for entry in fs::read_dir(folder).map_err(fail)? {
+    /// Each real folder once, by its own name rather than by that of a link: links that lead to each other's folders end nowhere else.
+    fn read_below(&mut self, folder: Folder, endings: &[&str]) -> Result<(), FileError> {
+        let mut seen = BTreeSet::new();
+        let (mut folders, mut links) = (vec![folder], Vec::new());
+        // Links wait until no real folder is left, in the order of their names.
+        while let Some(folder) = folders.pop().or_else(|| links.pop()) {
+            // Of a folder that has no real path listing tells why.
+            if !seen.insert(folder.path.canonicalize().unwrap_or_else(|_| folder.path.clone())) {
+                continue;
+            }
+            self.list(&folder, endings, &mut folders, &mut links)?;
+            links.sort_by(|a, b| b.name.cmp(&a.name));
+        }
+        Ok(())
+    }
+
+    /// Reads the files of a folder and finds the folders in it.
+    fn list(
+        &mut self,
+        folder: &Folder,
+        endings: &[&str],
+        folders: &mut Vec<Folder>,
+        links: &mut Vec<Folder>,
+    ) -> Result<(), FileError> {
+        let fail = |source| FileError::new("list", &folder.path, source);
+        for entry in fs::read_dir(&folder.path).map_err(fail)? {
             let entry = entry.map_err(fail)?;
             let Ok(file_name) = entry.file_name().into_string() else { continue };
             if file_name.starts_with('.') {
                 continue;
             }
             let path = entry.path();
-            let name = format!("{name}/{file_name}");
+            let name = format!("{}/{file_name}", folder.name);
             if endings.iter().any(|ending| file_name.ends_with(ending)) {
                 self.files.insert(name, read_text(&path));
             } else if path.is_symlink() && leads_back(&path) {
                 self.files.insert(name, Err(Unreadable::Circle));
-            } else if depth > 0 && path.is_dir() {
-                self.walk(&path, &name, endings, depth - 1)?;
+            } else if folder.depth > 0 && path.is_dir() {
+                let found = if path.is_symlink() { &mut *links } else { &mut *folders };
+                found.push(Folder { path, name, depth: folder.depth - 1 });
             }
         }
         Ok(())
@@ -138,6 +162,15 @@ impl Texts {
             (name, bytes.as_ref().map_or_else(|error| hash(error.to_string().as_bytes()), |bytes| hash(bytes)))
         })
     }
+}
+
+/// A folder that is still to be listed.
+struct Folder {
+    path: PathBuf,
+    /// Within the study.
+    name: String,
+    /// Folders in folders that are followed below it.
+    depth: u32,
 }
 
 /// Whether a link to a folder leads to one that it lies in.

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 
 use assert_cmd::cargo::CommandCargoExt;
 
-use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, STOP, STOP_REFERENCE, said, shotdamp, simulated};
+use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, STOP, STOP_REFERENCE, THREE_GAPS, said, shotdamp, simulated};
 
 /// Every file below the folder with its bytes, except the times that runs have taken and the snapshot, which holds times of files.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
@@ -285,6 +285,31 @@ fn a_link_that_leads_back_is_one_error_and_all_other_experiments_are_read() {
     }
     assert!(said.code == 2 && !said.err.contains("has the same id"), "{}", said.err);
     assert!(said.out.contains("2 experiments: 0 simulated"), "{}", said.out);
+}
+
+/// Folders that hold links to each other: each file is read once, by the name that it has without a link.
+#[cfg(unix)]
+#[test]
+fn links_to_and_fro_between_folders_are_followed_once() {
+    let desk = simulated();
+    desk.put("experiments/ch4/ch4-long.yaml", THREE_GAPS);
+    let link = |to: &str, name: &str| std::os::unix::fs::symlink(to, desk.layout.path(name)).unwrap();
+    link("../ch4", "experiments/ch3/across");
+    link("../ch3", "experiments/ch4/back");
+    let elsewhere = tempfile::tempdir().unwrap();
+    fs::write(elsewhere.path().join("ch5-long.yaml"), THREE_GAPS).unwrap();
+    link(elsewhere.path().to_str().unwrap(), "experiments/ch5");
+    link("../ch5", "experiments/ch4/far");
+    let said = shotdamp(&desk, &["list"]);
+    assert!(said.code == 0 && said.err.is_empty(), "{}", said.err);
+    for id in ["ch3-gap", "ch3-stop", "ch4-long", "ch5-long"] {
+        assert_eq!(said.out.matches(id).count(), 1, "{id}:\n{}", said.out);
+    }
+    let shown = shotdamp(&desk, &["show", "ch5-long"]).out;
+    assert!(
+        shown.contains("experiments/ch4/far/ch5-long.yaml") || shown.contains("experiments/ch5/ch5-long.yaml"),
+        "{shown}"
+    );
 }
 
 /// What all experiments share is named as well, each time anew.
