@@ -172,12 +172,16 @@ fn equal(claim: &Equal, view: &View<'_>) -> Result<Decision, Absence> {
     Ok(Decision { found, ..tally.decision()? })
 }
 
-/// Numbers and how far apart they are: `161.9 rad/s and 162.0 rad/s, 0.07 % apart`, `3.375, identical`,
-/// `2 × 12.84 rad/s and 25.69 rad/s, identical`.
+/// Of numbers that are equal to the last bit, of which only the first digits are shown.
+const IDENTICAL: &str = "identical to the last digit";
+
+/// Numbers and how far apart they are: `161.9 rad/s and 162.0 rad/s, 0.07 % apart`, `3.375, identical to the last digit`,
+/// `2 × 12.843 rad/s and 25.69 rad/s, identical to the last digit`.
 fn difference(values: &[Extracted], sources: &[Extraction], within: &Within) -> String {
     let multiples = values.iter().zip(sources).map(|(one, source)| match source {
         Extraction::Times(times) if times.factor.fract() == 0.0 => {
-            let of = with_unit(one.value / times.factor, 4, &one.unit);
+            let of = one.value / times.factor;
+            let of = with_unit(of, digits_for_product(of, times.factor), &one.unit);
             Some(format!("{} × {of}", significant(times.factor, 4)))
         }
         _ => None,
@@ -188,7 +192,7 @@ fn difference(values: &[Extracted], sources: &[Extraction], within: &Within) -> 
         .map(|one| one.value)
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
     if let (Some(first), true) = (values.first(), low == high && multiples.iter().all(Option::is_none)) {
-        return format!("{}, identical", with_unit(first.value, 4, &first.unit));
+        return format!("{}, {IDENTICAL}", with_unit(first.value, 4, &first.unit));
     }
     let apart = match within {
         Within::Relative(_) => percent((high - low) / low.abs().max(high.abs())),
@@ -203,7 +207,14 @@ fn difference(values: &[Extracted], sources: &[Extraction], within: &Within) -> 
     };
     let shown = values.iter().zip(multiples).map(|(one, multiple)| multiple.unwrap_or_else(|| shown(one)));
     let shown = shown.collect::<Vec<_>>().join(" and ");
-    if low == high { format!("{shown}, identical") } else { format!("{shown}, {apart} apart") }
+    if low == high { format!("{shown}, {IDENTICAL}") } else { format!("{shown}, {apart} apart") }
+}
+
+/// How many digits of a number have to be shown so that who multiplies them finds the product as it is shown beside them.
+fn digits_for_product(number: f64, factor: f64) -> usize {
+    let shown = |digits: usize| format!("{number:.0$e}", digits - 1).parse().unwrap_or(number);
+    let is_enough = |digits: &usize| significant(factor * shown(*digits), 4) == significant(factor * number, 4);
+    (4..=17).find(is_enough).unwrap_or(17)
 }
 
 /// Error of a difference of two (value, error). Numbers that are equal to the last bit come from the same motion, chaotic or

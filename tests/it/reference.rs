@@ -703,3 +703,26 @@ fn the_same_thing_is_judged_once() {
         }
     }
 }
+
+/// A reader who multiplies what is shown finds what stands beside it.
+#[test]
+fn numbers_that_are_identical_say_how_far() {
+    let f = [10.0, 12.8428, 15.0, 20.0, 25.6856, 30.0];
+    let table = complete(vec![
+        float("f", &f),
+        float("y", &[1.0, 2.0, 1.0, 1.0, 2.0, 1.0]),
+        float("y_num", &[0.0; 6]),
+        float("y_spread", &[0.0; 6]),
+    ]);
+    let place =
+        |low: f64, high: f64| format!("{{argmax: {{of: y, over: f, where: {{f: {{from: {low}, to: {high}}}}}}}}}");
+    let found = |values: &str| {
+        let claim = format!("claim: {{equal: {{values: [{values}], within: {{relative: 0.02}}}}}}");
+        judged(&format!("{claim}\nthreshold_reason: for the test"), &table).found
+    };
+    let (half, whole) = (place(9.0, 16.0), place(19.0, 31.0));
+    let found_half = found(&format!("{{times: {{factor: 2, of: {half}}}}}, {whole}"));
+    assert!(found_half.contains("2 × 12.843 and 25.69, identical to the last digit"), "{found_half}");
+    let found_same = found(&format!("{whole}, {whole}"));
+    assert!(found_same.contains("25.69, identical to the last digit"), "{found_same}");
+}
