@@ -170,8 +170,8 @@ impl Optimise {
                 let power = |base: u64| base.saturating_pow(u32::try_from(gaps).unwrap_or(u32::MAX));
                 power(u64::from(*points)).saturating_add(u64::from(*refine).saturating_mul(power(FINER)))
             }
-            // The candidates of the file have to be looked at first.
-            Search::Polish { evaluations } => u64::from(*evaluations) + self.candidates.len() as u64 + 1,
+            // Where it ends is looked at as the other searches look.
+            Search::Polish { evaluations } => u64::from(*evaluations) + 1,
         });
         let landscape = self.landscape.map_or(0, |landscape| gaps * (u64::from(landscape.points) + 1));
         let own = (swaps_each + 1) * self.two_opt_of.len() as u64;

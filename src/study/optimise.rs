@@ -2,7 +2,8 @@
 //! candidate evaluated once more as a result.
 //!
 //! A search sees one run for each setting, not an ensemble: ten times as many evaluations are worth more to it than the
-//! mean of an ensemble. Where the motion is chaotic it may so find luck, and the ensemble of the result says whether it did.
+//! mean of an ensemble. Where the motion is chaotic it may so find luck, and the ensemble of the result says whether it did. What
+//! goes on from the best candidate, a descent or a landscape, therefore begins at the one that is best as a result.
 
 use cpu_time::ThreadTime;
 use rayon::prelude::*;
@@ -131,7 +132,12 @@ struct Searches<'a> {
     evaluations: u64,
     /// The search that was reported last, and its best value so far.
     last: (String, f64),
+    /// Candidates that were evaluated as results already.
+    results: Results,
 }
+
+/// What came of gaps as a result, under the assumptions in force.
+type Results = Vec<(Vec<f64>, Result<Evaluated, RowFailure>)>;
 
 /// Runs it.
 pub(super) fn run_optimisation(task: Task<'_>, evaluate: &impl Evaluate, handler: &dyn EventHandler) -> Finished {
@@ -142,11 +148,12 @@ pub(super) fn run_optimisation(task: Task<'_>, evaluate: &impl Evaluate, handler
         // Its title may have changed since.
         return Finished { table: Table { metadata: metadata.clone(), ..whole.clone() }, ..Finished::default() };
     }
-    let (candidates, spent) = match found(task, evaluate, handler) {
-        Ok(found) => found,
-        Err(reason) => (vec![Candidate::failed(reason)], 0),
-    };
-    let evaluated = evaluate_all(task, evaluate, candidates);
+    let Searched { candidates, results, spent } = found(task, evaluate, handler).unwrap_or_else(|reason| Searched {
+        candidates: vec![Candidate::failed(reason)],
+        results: Vec::new(),
+        spent: 0,
+    });
+    let evaluated = evaluate_all(task, evaluate, candidates, &results);
     if let Some(optimise) = &experiment.optimise {
         let left = evaluations(optimise, variants).saturating_sub(spent);
         handler.on_event(&Event::Simulated { experiment: &experiment.id, count: left });
@@ -157,12 +164,16 @@ pub(super) fn run_optimisation(task: Task<'_>, evaluate: &impl Evaluate, handler
     Finished { table, failures, interrupted, ..Finished::default() }
 }
 
+/// What the searches left.
+struct Searched {
+    candidates: Vec<Candidate>,
+    results: Results,
+    /// Evaluations made.
+    spent: u64,
+}
+
 /// The candidates of the file, and what the searches find.
-fn found(
-    task: Task<'_>,
-    evaluate: &impl Evaluate,
-    handler: &dyn EventHandler,
-) -> Result<(Vec<Candidate>, u64), RowFailure> {
+fn found(task: Task<'_>, evaluate: &impl Evaluate, handler: &dyn EventHandler) -> Result<Searched, RowFailure> {
     let experiment = task.experiment;
     let optimise = experiment.optimise.as_ref().ok_or(SearchError::NothingToOptimise)?;
     let baseline = task.variants.first().ok_or(SearchError::NoAssumptions)?;
@@ -181,9 +192,10 @@ fn found(
         journal: Journal::open(task.journal, fingerprint),
         evaluations: 0,
         last: (String::new(), f64::INFINITY),
+        results: Vec::new(),
     };
     let candidates = searches.all()?;
-    Ok((candidates, searches.evaluations))
+    Ok(Searched { candidates, results: searches.results, spent: searches.evaluations })
 }
 
 impl Searches<'_> {
@@ -383,7 +395,7 @@ impl Searches<'_> {
     /// The best of what was found, improved down the gradient of settled motion; as it is where that motion has none.
     fn polished(&mut self, found: &[Candidate], most: u64) -> Result<Candidate, RowFailure> {
         let name = describe(SearchKind::Polish, None);
-        let start = self.best(found, &name)?;
+        let start = self.best(found)?;
         let (fitness, goal, measure) = (&self.fitness, self.optimise.goal, self.optimise.measure);
         let polished = polish(&self.bounds, &start, most, &mut |gaps| -> Result<_, RowFailure> {
             if is_interrupted() {
@@ -404,13 +416,29 @@ impl Searches<'_> {
         Ok(self.candidate(SearchKind::Polish, None, &Found { score, ..polished }, 0))
     }
 
-    /// The gaps of the best candidate as the searches saw it; of equal ones the first.
-    fn best(&mut self, found: &[Candidate], name: &str) -> Result<Vec<f64>, RowFailure> {
-        let points: Vec<Vec<f64>> = found.iter().map(|candidate| candidate.gaps.clone()).collect();
-        // The journal has all but the candidates of the file.
-        let scores = self.batch(&points, Wanted::Each, name, 0)?.scores;
-        let best = (0..points.len()).min_by(|a, b| scores[*a].order().total_cmp(&scores[*b].order()));
-        Ok(best.map(|best| points[best].clone()).ok_or(SearchError::NoCandidates)?)
+    /// The gaps of the candidate that is best as a result; of equal ones the first.
+    fn best(&mut self, found: &[Candidate]) -> Result<Vec<f64>, RowFailure> {
+        let mut new: Vec<Vec<f64>> = Vec::new();
+        for Candidate { gaps, .. } in found {
+            if !new.contains(gaps) && self.results.iter().all(|(known, _)| known != gaps) {
+                new.push(gaps.clone());
+            }
+        }
+        let fitness = &self.fitness;
+        let outcomes: Vec<_> = new.par_iter().map(|gaps| fitness.evaluate(gaps, Rigour::Result)).collect();
+        if is_interrupted() {
+            return Err(RowFailure::Interrupted);
+        }
+        self.count(&new);
+        self.results.extend(new.into_iter().zip(outcomes));
+        let score = |candidate: &Candidate| {
+            let (_, outcome) = self.results.iter().find(|(gaps, _)| *gaps == candidate.gaps)?;
+            let value = outcome.as_ref().ok()?.measured.get(self.measure)?.value;
+            Some(Score { value: self.signed(value) })
+        };
+        let order = |candidate: &&Candidate| score(candidate).map_or(f64::INFINITY, Score::order);
+        let best = found.iter().min_by(|a, b| order(a).total_cmp(&order(b)));
+        Ok(best.map(|best| best.gaps.clone()).ok_or(SearchError::NoCandidates)?)
     }
 
     fn signed(&self, value: f64) -> f64 {
@@ -443,10 +471,10 @@ impl Searches<'_> {
         Ok(looks)
     }
 
-    /// Sections through the best candidate as the searches saw it.
+    /// Sections through the best candidate.
     fn landscape(&mut self, found: &mut Vec<Candidate>) -> Result<(), RowFailure> {
         let Some(landscape) = self.optimise.landscape else { return Ok(()) };
-        let centre = self.best(found, &describe(SearchKind::Landscape, None))?;
+        let centre = self.best(found)?;
         let bounds = self.bounds.clone();
         let count = landscape.points as usize;
         let cut = sections(&bounds, &centre, count, spaced(landscape.spacing), |points| self.looks(points))?;
@@ -477,8 +505,13 @@ fn describe(kind: SearchKind, seed: Option<u32>) -> String {
     seed.map_or(name.clone(), |seed| format!("{name}, seed {seed}"))
 }
 
-/// Every candidate as a result, and as a variant under other values.
-fn evaluate_all(task: Task<'_>, evaluate: &impl Evaluate, candidates: Vec<Candidate>) -> Vec<Candidate> {
+/// Every candidate as a result, unless that is `known`, and as a variant under other values.
+fn evaluate_all(
+    task: Task<'_>,
+    evaluate: &impl Evaluate,
+    candidates: Vec<Candidate>,
+    known: &Results,
+) -> Vec<Candidate> {
     let experiment = task.experiment;
     let Some(optimise) = &experiment.optimise else { return candidates };
     let mut all: Vec<Candidate> = Vec::new();
@@ -508,6 +541,9 @@ fn evaluate_all(task: Task<'_>, evaluate: &impl Evaluate, candidates: Vec<Candid
         }
     }
     let evaluated = |(variant, gaps): &(usize, Vec<f64>)| {
+        if let Some((_, outcome)) = known.iter().find(|(known, _)| *variant == 0 && known == gaps) {
+            return outcome.clone();
+        }
         let rigour = if *variant == 0 { Rigour::Result } else { Rigour::Variant };
         ready[*variant].as_ref().map_err(RowFailure::clone)?.evaluate(gaps, rigour)
     };

@@ -195,6 +195,41 @@ fn an_improvement_within_its_standard_error_is_called_noise() {
     assert!(sure.contains("seeds 1 and 2"), "{sure}");
 }
 
+/// What one run shows may be luck: what goes on from the best candidate begins at the one that is best as a result.
+#[test]
+fn a_landscape_goes_through_the_candidate_that_is_best_after_its_ensemble() {
+    /// A bowl in which a single run with equal gaps is lucky.
+    struct Luck(Bowl);
+    impl Evaluate for Luck {
+        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
+            let mut evaluated = self.0.evaluate(it)?;
+            let scene = it.recipe.resolve(it.assumptions)?;
+            let is_uniform = scene.dampers.windows(2).all(|pair| pair[0].gap == pair[1].gap);
+            if it.rigour == Rigour::Step && is_uniform {
+                evaluated.measured.iter_mut().for_each(|measured| measured.value *= 0.1);
+            }
+            Ok(evaluated)
+        }
+    }
+    let desk = desk();
+    let searches = GAPS.find("  genetic:").unwrap()..GAPS.find("  landscape:").unwrap();
+    let mut text = GAPS.to_owned();
+    text.replace_range(searches, "");
+    let text = &text[..text.find("figures:").unwrap()];
+    desk.put(
+        "experiments/ch6/ch6-gaps.yaml",
+        &format!("{text}figure: {{x: along_gap, y: fitness_along, by: varied, caption: Landscape.}}\n"),
+    );
+    let engine = Luck(Bowl::default());
+    desk.run(2, &engine, &IgnoreEvents);
+    let table = desk.table("ch6-gaps");
+    assert_eq!(table.texts("candidate").unwrap(), ["known", "uniform", "landscape", "landscape", "landscape"]);
+    assert_eq!(table.floats("gap_2").unwrap(), [0.070, 0.050, 0.070, 0.070, 0.070]);
+    let points = table.lists("along_gap").unwrap().iter().map(Vec::len).sum::<usize>();
+    // Under two forces each; the candidate itself lies on all three sections.
+    assert_eq!(engine.0.evaluations.into_inner(), 2 * (2 + points - 2), "no result is computed twice");
+}
+
 #[test]
 fn a_search_that_cannot_begin_is_a_failed_row() {
     struct Broken;
