@@ -7,6 +7,7 @@ use super::measured::{Accuracy, CaseAccuracy, Contender, Origin, Point};
 use crate::text::number::{compact, quantity, significant};
 use crate::text::words::{self, counted};
 
+use super::representative::TWIN;
 use super::scatter;
 use super::verdict_price::{self, VerdictPrice};
 use crate::reference::symbol;
@@ -114,6 +115,7 @@ fn section(number: usize, case: &CaseAccuracy) -> String {
     if let Some(floor) = case.floor {
         text += &format!("The motion is chaotic: perturbed starts spread by {}.\n", significant(floor, 2));
     }
+    text += &chaotic_on_the_way(case);
     if !text.ends_with("\n\n") {
         text.push('\n');
     }
@@ -148,6 +150,22 @@ fn section(number: usize, case: &CaseAccuracy) -> String {
     }
     text.push('\n');
     text
+}
+
+/// Why the error of a motion that is not chaotic is far above rounding, where neighbouring runs part before it has settled.
+fn chaotic_on_the_way(case: &CaseAccuracy) -> String {
+    let [kick, moved] = TWIN;
+    let exact = case.points.iter().find(|point| point.contender == Contender::EXACT);
+    let parts = |point: &&Point| point.events.right < point.events.of && point.error > moved;
+    match exact.filter(|_| case.floor.is_none()).filter(parts) {
+        Some(Point { events, .. }) => format!(
+            "A start kicked by {kick:.0e} ends with the same measures to {moved:.0e}: the motion does not count as chaotic. The way \
+             there is: after {} the event-driven run and the reference meet them in another order, and what of the way falls \
+             into the averages differs from run to run.\n",
+            counted(events.right, "event", "events")
+        ),
+        None => String::new(),
+    }
 }
 
 /// The same solver in windows that change nothing but its time.

@@ -9,7 +9,7 @@ use crate::text::words;
 /// Cases of an experiment.
 const CASES: usize = 3;
 /// Kick that tells chaos from order, and how far it may have grown.
-const TWIN: [f64; 2] = [1e-9, 1e-6];
+pub(super) const TWIN: [f64; 2] = [1e-9, 1e-6];
 /// Perturbed starts, and the largest kick, that the floor of a chaotic case is taken from.
 const MEMBERS: u32 = 8;
 const KICK: f64 = 1e-6;

@@ -110,6 +110,25 @@ fn a_run_that_diverged_has_no_error_worth_a_number() {
 }
 
 #[test]
+fn a_motion_that_is_chaotic_only_on_its_way_says_why_its_error_is_large() {
+    let view = |accuracy: Accuracy| AccuracyView {
+        id: "a-damper".into(),
+        title: "A damper".into(),
+        machine: Machine::here(),
+        accuracy,
+        entries: Vec::new(),
+    };
+    let mut accuracy = measured("floor: {rigid: {restitution: 0}}", "[7]");
+    let told = "in another order, and what of the way falls into the averages differs";
+    assert!(!accuracy_page(&view(accuracy.clone()), "a.png").contains(told));
+    let point = &mut accuracy.cases[0].points[0];
+    (point.error, point.events.right) = (1e-4, point.events.of - 3);
+    let after = format!("after {} events the event-driven run", point.events.right);
+    let page = accuracy_page(&view(accuracy), "a.png");
+    assert!(page.contains(told) && page.contains(&after), "{page}");
+}
+
+#[test]
 fn a_reference_that_is_none_says_so() {
     let view = AccuracyView {
         id: "a-damper".into(),
