@@ -207,7 +207,7 @@ impl Quoted {
         let Some(place) = taken.clearest(inside(), 1.0).or_else(|| inside().next()).copied() else { return };
         taken.boxes.push(place);
         match self.at {
-            QuotedAt::Place(_) => {}
+            QuotedAt::Place(_) => lead(sheet, Point { y: place.at(0.0, 0.5).y, ..at }, &place, 0.0),
             QuotedAt::Level(_) => lead(sheet, Point { x: place.at(0.5, 0.0).x, ..at }, &place, 0.0),
             QuotedAt::Point { .. } => lead(sheet, at, &place, QUOTED),
         }
@@ -234,7 +234,14 @@ impl Quoted {
                     let top = down(share, width);
                     beside.map(|left| Rect { left, top, right: left + 2.0 * half, bottom: top + width })
                 });
-                level.chain(along).collect()
+                // Beyond another line that stands close, with a line that leads there.
+                let further = [1.0, 2.0, 3.0].into_iter().flat_map(|times| {
+                    let away = SPACE / 2.0 + times * 2.0 * QUOTED;
+                    steps(30).flat_map(move |share| {
+                        [at.x + away, at.x - away - width].map(|x| about(x, down(share, 2.0 * half) + half))
+                    })
+                });
+                level.chain(along).chain(further).collect()
             }
             QuotedAt::Level(_) => {
                 let left = |share: f64| frame.left + SPACE + share * (frame.width() - 2.0 * SPACE - width);
