@@ -7,7 +7,7 @@ use super::destination::Destination;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_document, print_error, print_unread, print_warnings};
-use super::select::{Chosen, choose, open};
+use super::select::{Chosen, choose, no_entry, open};
 use crate::atomic::{self, FileError};
 use crate::reference;
 use crate::report::{
@@ -129,7 +129,7 @@ fn append_summary(file: &Path, view: &CheckView<'_>) -> std::io::Result<()> {
 }
 
 fn accept(study: &Study, judgement: &Judgement, id: &str, reason: &str) -> Result<Exit, CliError> {
-    let unknown = || CliError::NoEntry(id.into());
+    let unknown = || no_entry(id, judgement);
     let (experiment, _) = id.split_once('/').ok_or_else(unknown)?;
     let judged =
         judgement.verdicts.get(experiment).into_iter().flatten().find(|one| one.id == id).ok_or_else(unknown)?;

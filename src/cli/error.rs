@@ -32,8 +32,8 @@ pub(super) enum CliError {
         "`{0}` cannot name a folder of experiments/: write names of letters, digits, `-` and `_`, with `/` between them"
     )]
     Folder(String),
-    #[error("there is no entry `{0}`; entries are named experiment/entry, as `shotdamp check` shows them")]
-    NoEntry(String),
+    #[error("there is no entry `{entry}`; {hint}")]
+    NoEntry { entry: String, hint: String },
     #[error("{} holds neither tables (*.parquet) nor verdicts (verdicts.json)", from_here(.0))]
     NoResults(PathBuf),
     #[error("{} is a single table: name the folder that it lies in", from_here(.0))]

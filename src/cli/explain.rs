@@ -6,7 +6,7 @@ use super::args::{Args, LimitArgs};
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_progress, print_unread};
-use super::select::{matches, open};
+use super::select::{matches, no_entry, open};
 use crate::calibrate::{CalibrationError, Read, moved_alone};
 use crate::dynamics::is_interrupted;
 use crate::experiment::{AssumptionName, AssumptionValue, Experiment};
@@ -41,7 +41,7 @@ pub(super) fn explain(
     let reached = |id: &str| !is_interrupted() || trials.contains_key(id);
     let texts = explanations(&study, &judgement, &trials, |id| wanted(id) && reached(id));
     if texts.is_empty() {
-        return Err(CliError::NoEntry(pattern.into()));
+        return Err(no_entry(pattern, &judgement));
     }
     print(&texts.join("\n"))?;
     Ok(if study.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })

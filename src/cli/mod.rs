@@ -30,6 +30,7 @@ mod update;
 
 use std::process::ExitCode;
 
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser};
 
 use args::{Args, Command};
@@ -43,7 +44,7 @@ use crate::dynamics::is_interrupted;
 /// could not run, is missing, or was asked for wrongly; 130 interrupted.
 #[must_use]
 pub fn main() -> ExitCode {
-    let mut args = Args::parse();
+    let mut args = Args::try_parse().unwrap_or_else(|error| with_tip(error).exit());
     output::set_style(args.quiet, args.color);
     let outcome = dispatch(&mut args);
     if is_interrupted() {
@@ -56,6 +57,17 @@ pub fn main() -> ExitCode {
             Exit::CouldNot.into()
         }
     }
+}
+
+/// Who names an experiment where a command belongs is told what to write.
+fn with_tip(mut error: clap::Error) -> clap::Error {
+    if let (ErrorKind::InvalidSubcommand, None, Some(ContextValue::String(word))) =
+        (error.kind(), error.get(ContextKind::SuggestedSubcommand), error.get(ContextKind::InvalidSubcommand))
+    {
+        let tip = format!("to simulate an experiment, write `shotdamp run {word}`");
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+    }
+    error
 }
 
 fn dispatch(args: &mut Args) -> Result<Exit, CliError> {

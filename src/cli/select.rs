@@ -211,7 +211,18 @@ fn readable(study: &Study) -> BTreeSet<&str> {
 
 /// The error of a pattern that none of the `ids` answers to.
 pub(super) fn no_match(pattern: &str, ids: &BTreeSet<&str>) -> CliError {
-    CliError::NoMatch { pattern: pattern.into(), hint: hint(pattern, ids, "shotdamp list") }
+    let hint = match pattern.rsplit_once('/') {
+        Some(_) if pattern.ends_with(".yaml") => hint(stem(pattern), ids, "shotdamp list"),
+        Some(_) => "ids have no `/`: a folder is named with --folder, an entry with `shotdamp explain`".into(),
+        None => hint(pattern.trim_end_matches(".yaml"), ids, "shotdamp list"),
+    };
+    CliError::NoMatch { pattern: pattern.into(), hint }
+}
+
+/// The error of an entry that there is not.
+pub(super) fn no_entry(entry: &str, judgement: &Judgement) -> CliError {
+    let entries = judgement.verdicts.values().flatten().map(|judged| judged.id.as_str()).collect();
+    CliError::NoEntry { entry: entry.into(), hint: hint(entry, &entries, "shotdamp check") }
 }
 
 /// The name that was probably meant, or those that there are; `all` shows them.
@@ -219,11 +230,21 @@ pub(super) fn hint(asked: &str, names: &BTreeSet<&str>, all: &str) -> String {
     if let Some(hint) = did_you_mean(asked, names.iter().copied()) {
         return hint;
     }
-    let names: Vec<&str> = names.iter().copied().collect();
-    match names.as_slice() {
-        [] => "there are none that can be read".into(),
-        few if few.len() <= 8 => format!("there are {}", few.join(", ")),
-        many => format!("there are {}, … ({} in all; see `{all}`)", many[..4].join(", "), many.len()),
+    if names.is_empty() {
+        return "there are none that can be read".into();
+    }
+    let with_it: Vec<&str> = names.iter().copied().filter(|name| !asked.is_empty() && name.contains(asked)).collect();
+    if with_it.is_empty() {
+        return format!("there are {}", some(&names.iter().copied().collect::<Vec<_>>(), all));
+    }
+    format!("it is part of {}", some(&with_it, all))
+}
+
+/// The first of these names; `all` shows them.
+fn some(names: &[&str], all: &str) -> String {
+    match names {
+        few if few.len() <= 8 => few.join(", "),
+        many => format!("{}, … ({} in all; see `{all}`)", many[..4].join(", "), many.len()),
     }
 }
 

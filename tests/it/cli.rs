@@ -139,7 +139,7 @@ fn status_names_the_input_that_changed() {
 fn what_nothing_answers_to_is_an_error() {
     let desk = Desk::new();
     for arguments in
-        [&["run", "ch3-elsewhere"][..], &["check", "ch4-*"], &["show", "gap"], &["status", "ch3-gap", "x*"]]
+        [&["run", "ch3-elsewhere"][..], &["check", "ch4-*"], &["show", "gaps-of-all"], &["status", "ch3-gap", "x*"]]
     {
         let said = shotdamp(&desk, arguments);
         assert_eq!(said.code, 2, "{arguments:?}");

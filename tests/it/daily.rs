@@ -264,6 +264,19 @@ fn a_name_that_is_almost_right_gets_the_right_one() {
         assert_eq!(said.code, 2);
         assert!(said.err.ends_with("`; did you mean `ch3-stop`?\n"), "{arguments:?}: {}", said.err);
     }
+    for (arguments, told) in [
+        (&["run", "gap"][..], "no experiment matches `gap`; it is part of ch3-gap"),
+        (
+            &["show", "ch3-gap/grows"],
+            "ids have no `/`: a folder is named with --folder, an entry with `shotdamp explain`",
+        ),
+        (&["explain", "ch3-gap"], "there is no entry `ch3-gap`; it is part of ch3-gap/grows"),
+        (&["explain", "ch3-gap/grow"], "there is no entry `ch3-gap/grow`; did you mean `ch3-gap/grows`?"),
+        (&["ch3-gap"], "tip: to simulate an experiment, write `shotdamp run ch3-gap`"),
+    ] {
+        let said = shotdamp(&desk, arguments);
+        assert!(said.code == 2 && said.err.contains(told), "{arguments:?}: {}", said.err);
+    }
     let none = shotdamp(&desk, &["calibrate", "nope"]);
     assert_eq!(
         (none.code, none.err.as_str()),
