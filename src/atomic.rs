@@ -14,7 +14,7 @@ const LINKS: u32 = 40;
 
 /// A file that could not be read or written, with its name.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot {action} {}: {source}", from_here(path))]
+#[error("cannot {action} {}: {}", from_here(path), in_words(source))]
 pub struct FileError {
     /// `read`, `write`, …
     pub action: &'static str,
@@ -27,6 +27,19 @@ pub struct FileError {
 impl FileError {
     pub(crate) fn new(action: &'static str, path: &Path, source: io::Error) -> Self {
         Self { action, path: path.to_path_buf(), source }
+    }
+}
+
+/// What the system says, with what to do where it is a right that lacks.
+fn in_words(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::PermissionDenied => {
+            "permission denied; give yourself the right to it (chmod), or work in a folder of your own".into()
+        }
+        io::ErrorKind::ReadOnlyFilesystem => {
+            "its file system is read-only; work in a copy of the study elsewhere".into()
+        }
+        _ => error.to_string(),
     }
 }
 
