@@ -4,7 +4,7 @@ use crate::arithmetic::four::Four;
 use crate::arithmetic::lanes::WIDTH;
 
 /// Complex numbers side by side.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Complexes {
     pub(crate) re: Four,
     pub(crate) im: Four,

@@ -96,4 +96,10 @@ impl Four {
     }
 }
 
+impl Default for Four {
+    fn default() -> Self {
+        Self::ZERO
+    }
+}
+
 operators!([] Four);

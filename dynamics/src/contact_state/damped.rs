@@ -23,6 +23,7 @@ use crate::arithmetic::complexes::Complexes;
 use crate::arithmetic::four::Four;
 use crate::arithmetic::lanes::WIDTH;
 use crate::arithmetic::wide::widened;
+use crate::contact_state::block::Block;
 use crate::contact_state::spectral::{Spectral, invert_again};
 use crate::contact_state::undamped::NormalModes;
 
@@ -33,8 +34,6 @@ const LAST_STEP: f64 = 1e-8;
 const CONVERGED: f64 = 1e-13;
 /// And below this it is rounding, whatever was before.
 const NOTHING: f64 = 1e-15;
-/// Cheaper steps before those, as if no two other modes damped each other: with a few dashpots they leave an error of 1e-5 of λ or less.
-const NEARER: usize = 2;
 /// σ below this share of its terms is that of two eigenvalues about to meet: a mode near critical damping. By a block for each, integrals
 /// of squares would be differences of terms that grow as 1/σ².
 const CRITICAL: f64 = 1e-2;
@@ -152,40 +151,45 @@ impl<'a> Problem<'a> {
             work.squares[i] = Four::all(omega[i] * omega[i]);
         }
         // Each mode's own coordinate is the last of its equation, and the last one stands in its place.
+        let last = n - 1;
         for (lane, own) in work.own.into_iter().enumerate() {
-            let (last, before) = (&self.damping[(n - 1) * n..], &self.damping[own * n..]);
-            for i in 0..n - 1 {
-                work.damping[own.max(i) * n + own.min(i)].set(lane, last[if i == own { n - 1 } else { i }]);
-                work.damping[(n - 1) * n + i].set(lane, before[if i == own { n - 1 } else { i }]);
+            let (of_last, of_own) = (&self.damping[last * n..], &self.damping[own * n..]);
+            for (to, from) in work.damping[own * n..][..own].iter_mut().zip(of_last) {
+                to.set(lane, *from);
             }
-            work.damping[n * n - 1].set(lane, before[own]);
-            work.squares[own].set(lane, omega[n - 1] * omega[n - 1]);
-            work.squares[n - 1].set(lane, omega[own] * omega[own]);
+            for i in own + 1..last {
+                work.damping[i * n + own].set(lane, of_last[i]);
+            }
+            for (to, from) in work.damping[last * n..].iter_mut().zip(of_own) {
+                to.set(lane, *from);
+            }
+            work.damping[last * n + own].set(lane, of_own[last]);
+            work.damping[own * n + own].set(lane, of_last[last]);
+            work.damping[last * n + last].set(lane, of_own[own]);
+            work.squares[own].set(lane, omega[last] * omega[last]);
+            work.squares[last].set(lane, omega[own] * omega[own]);
         }
-        let mut lambda =
+        work.lambda =
             Complexes { re: Four::new(starts.map(|start| start.re)), im: Four::new(starts.map(|start| start.im)) };
-        for _ in 0..NEARER {
-            lambda = lambda.minus(nearer(lambda, work));
-        }
+        nearer(work);
+        work.lambda = work.lambda.minus(work.step);
         let mut is_last = false;
         for _ in 0..MOST_STEPS {
             // With a few modes the compiler unrolls loops over them.
-            let step = match n {
-                5 => newton::<5>(lambda, work),
-                6 => newton::<6>(lambda, work),
-                7 => newton::<7>(lambda, work),
-                8 => newton::<8>(lambda, work),
-                _ => newton::<0>(lambda, work),
-            };
-            let below = |share: f64| {
-                let [step, size] = [step.square().array(), lambda.square().array()];
-                (0..WIDTH).all(|lane| step[lane] <= share * share * size[lane])
-            };
+            match n {
+                5 => newton::<5>(work),
+                6 => newton::<6>(work),
+                7 => newton::<7>(work),
+                8 => newton::<8>(work),
+                _ => newton::<0>(work),
+            }
+            let [step, size] = [&work.step, &work.lambda].map(|z| z.square().array());
+            let below = |share: f64| (0..WIDTH).all(|lane| step[lane] <= share * share * size[lane]);
             if is_last || below(NOTHING) {
-                return if below(CONVERGED) { found(lambda, work) } else { None };
+                return if below(CONVERGED) { found(work) } else { None };
             }
             is_last = below(LAST_STEP);
-            lambda = lambda.minus(step);
+            work.lambda = work.lambda.minus(work.step);
         }
         None
     }
@@ -263,8 +267,9 @@ impl<'a> Problem<'a> {
     fn assemble_by_registers(&self, found: &[Found], shapes: &[Complexes], room: Spectral) -> Spectral {
         let (n, count) = (self.modes.omega.len(), self.starts.len());
         let width = 2 * count;
-        let Spectral { mut from_blocks, mut to_blocks, mut matrices, .. } = room;
+        let Spectral { mut from_blocks, mut to_blocks, mut matrices, mut blocks, .. } = room;
         matrices.clear();
+        blocks.clear();
         for numbers in [&mut from_blocks, &mut to_blocks] {
             numbers.resize(2 * n * width, 0.0);
         }
@@ -293,20 +298,25 @@ impl<'a> Problem<'a> {
                     let at = (half * n + i) * width + 2 * first;
                     let v = Complexes { re: v.re * twice, im: v.im * -2.0 };
                     for (to, z) in [(&mut from_blocks, v), (&mut to_blocks, w)] {
-                        to[at..][..2 * lanes].copy_from_slice(&z.pairs()[..2 * lanes]);
+                        // What is of a known length is copied without a call.
+                        match to[at..][..2 * lanes].as_chunks_mut() {
+                            ([all], _) => *all = z.pairs(),
+                            (_, few) => few.iter_mut().zip(z.pairs()).for_each(|(to, from)| *to = from),
+                        }
                     }
                 }
             }
         }
-        Spectral::new(from_blocks, to_blocks, matrices, f64::INFINITY)
+        blocks.extend(matrices.iter().map(|matrix| Block::new(*matrix)));
+        Spectral { from_blocks, to_blocks, matrices, blocks, lasts: f64::INFINITY }
     }
 }
 
 /// The modes that Newton's method has come to, unless one of them is near critical damping; their shapes go behind those before, by
 /// normal coordinates.
 #[inline(always)]
-fn found(lambda: Complexes, work: &mut Work) -> Option<Found> {
-    let Work { own, squares, x, shapes, .. } = work;
+fn found(work: &mut Work) -> Option<Found> {
+    let Work { own, lambda, x, shapes, sum, stiff, .. } = work;
     let first = shapes.len();
     shapes.extend_from_slice(x);
     let (last, shape) = (x.len() - 1, &mut shapes[first..]);
@@ -316,28 +326,17 @@ fn found(lambda: Complexes, work: &mut Work) -> Option<Found> {
             shape[to].im.set(lane, x[from].im.at(lane));
         }
     }
-    let [sum, stiff] = norms(x, squares);
-    let moving = lambda.times(lambda).times(sum);
-    let size = moving.minus(stiff);
+    let moving = lambda.times(*lambda).times(*sum);
+    let size = moving.minus(*stiff);
     let [of_size, of_terms] = [size.square(), moving.square() + stiff.square()].map(Four::array);
     let is_apart = (0..WIDTH).all(|lane| of_size[lane] > CRITICAL * CRITICAL * of_terms[lane]);
-    is_apart.then_some(Found { lambda, size })
-}
-
-/// xᵀx and xᵀΩ²x.
-#[inline(always)]
-fn norms(x: &[Complexes], squares: &[Four]) -> [Complexes; 2] {
-    let (mut sum, mut stiff) = (Complexes::ZERO, Complexes::ZERO);
-    for (x, square) in x.iter().zip(squares) {
-        let own = x.times(*x);
-        (sum, stiff) = (sum.plus(own), stiff.plus(own.scaled(*square)));
-    }
-    [sum, stiff]
+    is_apart.then_some(Found { lambda: *lambda, size })
 }
 
 const ONE: Complexes = Complexes { re: Four::new([1.0; WIDTH]), im: Four::ZERO };
 
-/// Room to work in, of one split after another.
+/// Room to work in, of one split after another. What is worked out step by step stands here: the compiler takes registers apart where
+/// it can follow them through many operations.
 #[derive(Default)]
 struct Work {
     /// Modes whose equations are at hand.
@@ -354,6 +353,15 @@ struct Work {
     inverse: Vec<Complexes>,
     /// L⁻ᵀ e_n.
     x: Vec<Complexes>,
+    lambda: Complexes,
+    r: Complexes,
+    /// xᵀx and xᵀΩ²x.
+    sum: Complexes,
+    stiff: Complexes,
+    /// λ/(σ + r).
+    slope: Complexes,
+    /// Newton's step.
+    step: Complexes,
     /// x of all modes that are found, by normal coordinates.
     shapes: Vec<Complexes>,
     found: Vec<Found>,
@@ -375,68 +383,81 @@ impl Work {
 
 /// Newton's step for λ, and x in passing: L D Lᵀ = λ² + λ C + Ω², row by row, whose last pivot is r.
 #[inline(always)]
-fn newton<const N: usize>(lambda: Complexes, work: &mut Work) -> Complexes {
+fn newton<const N: usize>(work: &mut Work) {
     let n = if N > 0 { N } else { work.squares.len() };
     let (squares, damping, lower) = (&work.squares[..n], &work.damping[..n * n], &mut work.lower[..n * n]);
     let (row, inverse, x) = (&mut work.row[..n], &mut work.inverse[..n], &mut work.x[..n]);
-    let square = lambda.times(lambda);
-    let mut r = square;
+    let (lambda, square) = (work.lambda, work.lambda.times(work.lambda));
     for (i, entries) in damping.chunks_exact(n).enumerate() {
         let (above, own) = lower.split_at_mut(i * n);
         for (j, before) in above.chunks_exact(n).enumerate() {
-            let mut sum = lambda.scaled(entries[j]);
-            for (u, l) in row[..j].iter().zip(before) {
-                sum = sum.minus(u.times(*l));
+            row[j] = lambda.scaled(entries[j]);
+            for k in 0..j {
+                row[j] = row[j].minus(row[k].times(before[k]));
             }
-            row[j] = sum;
         }
-        let mut pivot = square.plus(lambda.scaled(entries[i]));
-        pivot.re = pivot.re + squares[i];
-        for ((u, inverse), l) in row[..i].iter().zip(&*inverse).zip(own) {
-            *l = u.times(*inverse);
-            pivot = pivot.minus(u.times(*l));
+        row[i] = square.plus(lambda.scaled(entries[i]));
+        row[i].re = row[i].re + squares[i];
+        for ((j, inverse), l) in (0..i).zip(&*inverse).zip(own) {
+            *l = row[j].times(*inverse);
+            row[i] = row[i].minus(row[j].times(*l));
         }
-        inverse[i] = pivot.inverse();
-        r = pivot;
+        if i < n - 1 {
+            inverse[i] = row[i].inverse();
+        }
     }
-    x.fill(Complexes::ZERO);
+    work.r = row[n - 1];
     x[n - 1] = ONE;
-    for (i, row) in lower.chunks_exact(n).enumerate().rev() {
+    for (x, l) in x.iter_mut().zip(&lower[(n - 1) * n..n * n - 1]) {
+        *x = l.scaled(Four::all(-1.0));
+    }
+    for (i, row) in lower.chunks_exact(n).take(n - 1).enumerate().rev() {
         let (before, own) = x.split_at_mut(i);
         before.iter_mut().zip(row).for_each(|(x, l)| *x = x.minus(l.times(own[0])));
     }
-    step(lambda, r, norms(x, squares))
+    step(work);
 }
 
-/// The same step where only the last row of C has anything beside its diagonal.
+/// The same step where only the last row of C has anything beside its diagonal: as if no two other modes damped each other, which with
+/// a few dashpots leaves an error of 1e-5 of λ or less, and no smaller one when it is repeated. x is there but for its sign.
 #[inline(always)]
-fn nearer(lambda: Complexes, work: &Work) -> Complexes {
-    let (squares, n) = (&work.squares, work.squares.len());
-    let square = lambda.times(lambda);
-    let own = |i: usize| {
-        let own = square.plus(lambda.scaled(work.damping[i * n + i]));
-        Complexes { re: own.re + squares[i], im: own.im }
-    };
-    let (mut r, mut sums) = (own(n - 1), [ONE, ONE.scaled(squares[n - 1])]);
-    for i in 0..n - 1 {
-        let beside = lambda.scaled(work.damping[(n - 1) * n + i]);
-        let x = beside.times(own(i).inverse());
-        r = r.minus(beside.times(x));
-        let of_x = x.times(x);
-        sums = [sums[0].plus(of_x), sums[1].plus(of_x.scaled(squares[i]))];
+fn nearer(work: &mut Work) {
+    let (lambda, square) = (work.lambda, work.lambda.times(work.lambda));
+    let Work { squares, damping, x, r, .. } = &mut *work;
+    let n = squares.len();
+    for (i, x) in x.iter_mut().enumerate() {
+        *x = square.plus(lambda.scaled(damping[i * n + i]));
+        x.re = x.re + squares[i];
     }
-    step(lambda, r, sums)
+    *r = x[n - 1];
+    x[n - 1] = ONE;
+    for (x, entry) in x.iter_mut().zip(&damping[(n - 1) * n..n * n - 1]) {
+        let beside = lambda.scaled(*entry);
+        *x = x.inverse();
+        *x = beside.times(*x);
+        *r = r.minus(beside.times(*x));
+    }
+    step(work);
 }
 
-/// Newton's step where λ gives r, and x these [`norms`].
+/// Newton's step where λ gives r and x.
 #[inline(always)]
-fn step(lambda: Complexes, r: Complexes, [sum, stiff]: [Complexes; 2]) -> Complexes {
-    let square = lambda.times(lambda);
+fn step(work: &mut Work) {
+    let Work { squares, x, lambda, r, sum, stiff, slope, step, .. } = work;
+    (*sum, *stiff) = (Complexes::ZERO, Complexes::ZERO);
+    for (x, square) in x.iter().zip(&*squares) {
+        let own = x.times(*x);
+        *sum = sum.plus(own);
+        *stiff = stiff.plus(own.scaled(*square));
+    }
     // r = λ² xᵀx + λ xᵀC x + xᵀΩ²x leaves no need of C in r′ = (σ + r)/λ.
-    let inverse = square.times(sum).minus(stiff).plus(r).inverse().times(lambda);
-    let step = r.times(inverse);
+    *slope = lambda.times(*lambda).times(*sum).minus(*stiff).plus(*r);
+    *slope = slope.inverse();
+    *slope = slope.times(*lambda);
+    *step = r.times(*slope);
+    *slope = sum.times(*slope);
     // λ² bends r; what x does beside is of the same order, and small where modes are apart.
-    step.plus(step.times(step).times(sum.times(inverse)))
+    *step = step.plus(step.times(*step).times(*slope));
 }
 
 /// W ← W + (1 − W V) W.
