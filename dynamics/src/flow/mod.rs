@@ -171,7 +171,7 @@ impl Flow {
             dissipation: OnceCell::new(),
             place: Cell::new(0),
         };
-        flow.rows = rows.of(system, &flow.modes, &flow.blocks, |row| flow.row(row));
+        flow.rows = rows.of(system, &flow.modes, &flow.blocks, |row, room| flow.row(row, room));
         Ok(flow)
     }
 
@@ -207,21 +207,25 @@ impl Flow {
 
     /// Row of the face on one side of particle j's enclosure.
     pub(crate) fn face(&self, system: &HybridSystem, j: usize, side: Side) -> &Row {
-        let rows = |particle: &Particle| [Side::Floor, Side::Ceiling].map(|side| self.row(&side.face(particle).row));
+        let rows = |particle: &Particle| {
+            [Side::Floor, Side::Ceiling].map(|side| self.row(&side.face(particle).row, Vec::new()))
+        };
         let [floor, ceiling] = &self.faces.get_or_init(|| system.particles.iter().map(rows).collect())[j];
         side.of(floor, ceiling)
     }
 
     widened! {
-        /// The signal r·p; a row may end where only zeros follow.
-        pub(crate) fn row | row_wide (&self, row: &[f64]) -> Row = row_by_registers
+        /// The signal r·p, in the room of some weights; a row may end where only zeros follow.
+        pub(crate) fn row | row_wide (&self, row: &[f64], room: Vec<[f64; 4]>) -> Row = row_by_registers
     }
 
     #[inline(always)]
-    fn row_by_registers(&self, row: &[f64]) -> Row {
+    fn row_by_registers(&self, row: &[f64], room: Vec<[f64; 4]>) -> Row {
         let size = self.modes.spectral.width();
         // By values and by rates: r·V, column by column of V.
-        let mut weights = Vec::with_capacity(self.blocks.len());
+        let mut weights = room;
+        weights.clear();
+        weights.reserve(self.blocks.len());
         weights.resize(self.own, [0.0; 4]);
         let (values, rates) = self.modes.spectral.from_blocks.split_at(self.order * size);
         for (i, r) in row.iter().enumerate().filter(|(_, r)| **r != 0.0) {

@@ -163,18 +163,18 @@ impl Radii {
 }
 
 impl Terms {
-    /// sⱼ₊₂ = (−2a sⱼ₊₁ − b sⱼ/(j + 1))/(j + 2) for the coefficients of a share.
+    /// A′ = −b B and B′ = A − 2a B, coefficient by coefficient.
     fn new(block: &Block, pace: f64) -> Self {
-        let (p, q) = (-2.0 * block.decay / pace, -block.determinant / (pace * pace));
-        let series = |value: f64, rate: f64| {
-            let mut s = [0.0; PADDED];
-            (s[0], s[1]) = (value, rate);
-            for j in 0..TERMS - 2 {
-                s[j + 2] = (p * s[j + 1] + q * s[j] / (j + 1) as f64) / (j + 2) as f64;
-            }
-            s
-        };
-        Self { value: series(1.0, 0.0), rate: series(0.0, 1.0).map(|s| s / pace) }
+        let unit = 1.0 / pace;
+        let (p, q) = (-2.0 * block.decay * unit, -block.determinant * (unit * unit));
+        let (mut value, mut rate) = ([0.0; PADDED], [0.0; PADDED]);
+        (value[0], rate[1]) = (1.0, 1.0);
+        for j in 1..TERMS - 1 {
+            let inverse = 1.0 / (j + 1) as f64;
+            value[j + 1] = q * rate[j] * inverse;
+            rate[j + 1] = (p * rate[j] + value[j]) * inverse;
+        }
+        Self { value, rate: rate.map(|s| s * unit) }
     }
 
     #[inline(always)]

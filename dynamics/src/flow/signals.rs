@@ -213,20 +213,25 @@ fn across(
 }
 
 impl Rows {
-    /// What a contact state needs, in the room of these; `blocks` are its own and the drive's, `signal` gives r·p of a row r.
+    /// What a contact state needs, in the room of these; `blocks` are its own and the drive's, `signal` gives r·p of a row r, in the room of
+    /// weights.
     pub(crate) fn of(
         self,
         system: &HybridSystem,
         modes: &Modes,
         blocks: &[Block],
-        signal: impl Fn(&[f64]) -> Row,
+        signal: impl Fn(&[f64], Vec<[f64; 4]>) -> Row,
     ) -> Self {
-        let Self { mut rows, mut weights, mut bends, mut guards, .. } = self;
-        rows.clear();
+        let Self { rows: old, mut weights, mut bends, mut guards, .. } = self;
+        let old = RefCell::new(old);
+        let signal = |row: &[f64]| {
+            let room = old.borrow_mut().pop().map(|old: Row| old.weights);
+            signal(row, room.unwrap_or_default())
+        };
         weights.clear();
         guards.clear();
         bends.get_mut().clear();
-        let mut all = Self { rows, weights, bends, guards, ..Self::default() };
+        let mut all = Self { weights, bends, guards, ..Self::default() };
         all.rows.reserve(2 + 3 * system.particles.len() + system.observed_rows.len());
         if let Some(row) = system.base_row() {
             all.base = all.place(signal(row));
@@ -413,7 +418,10 @@ fn bend(blocks: &Blocks, &[v0, v1, r0, r1]: &[Four; 4]) -> Four {
 
 /// Weights of several blocks.
 fn together(weights: &[[f64; 4]]) -> [Four; 4] {
-    [0, 1, 2, 3].map(|i| Four::padded(weights.iter().map(|weights| weights[i])))
+    let mut all = [[0.0; 4]; WIDTH];
+    all.iter_mut().zip(weights).for_each(|(to, from)| *to = *from);
+    let [a, b, c, d] = &all;
+    [0, 1, 2, 3].map(|i| Four::new([a[i], b[i], c[i], d[i]]))
 }
 
 /// A signal, its rate, its acceleration and the rate of that after a time, by the kernels of its blocks.

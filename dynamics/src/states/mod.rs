@@ -193,7 +193,7 @@ impl States {
     }
 }
 
-/// One that is known, or a new one; the oldest of many gives its room to that, unless somebody holds it.
+/// One that is known, or a new one; the oldest of many that nobody holds gives its room to that.
 #[inline]
 fn visit<T>(
     known: &ByContact<T>,
@@ -207,7 +207,8 @@ fn visit<T>(
             return Ok(Rc::clone(old));
         }
         if states.len() >= MOST_DAMPINGS {
-            oldest = Rc::into_inner(states.remove(0));
+            let free = states.iter().position(|state| Rc::strong_count(state) == 1);
+            oldest = Rc::into_inner(states.remove(free.unwrap_or_default()));
         }
     }
     let new = Rc::new(build(oldest)?);
