@@ -30,11 +30,11 @@ impl FileError {
     }
 }
 
-/// What the system says, with what to do where it is a right that lacks.
+/// What the system says, with what to do where permission is missing.
 fn in_words(error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::PermissionDenied => {
-            "permission denied; give yourself the right to it (chmod), or work in a folder of your own".into()
+            "permission denied; change its permissions (chmod), or work in a folder of your own".into()
         }
         io::ErrorKind::ReadOnlyFilesystem => {
             "its file system is read-only; work in a copy of the study elsewhere".into()

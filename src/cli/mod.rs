@@ -59,10 +59,13 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Who names an experiment where a command belongs is told what to write.
+/// Who names an experiment where a command belongs is told what to write. No command has a `-` or a digit in its name.
 fn with_tip(mut error: clap::Error) -> clap::Error {
-    if let (ErrorKind::InvalidSubcommand, None, Some(ContextValue::String(word))) =
-        (error.kind(), error.get(ContextKind::SuggestedSubcommand), error.get(ContextKind::InvalidSubcommand))
+    let is_near_command = error.get(ContextKind::SuggestedSubcommand).is_some();
+    if let (ErrorKind::InvalidSubcommand, Some(ContextValue::String(word))) =
+        (error.kind(), error.get(ContextKind::InvalidSubcommand))
+        && !word.contains('/')
+        && (!is_near_command || word.contains(|one: char| one == '-' || one.is_ascii_digit()))
     {
         let tip = format!("to simulate an experiment, write `shotdamp run {word}`");
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));

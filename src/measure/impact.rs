@@ -32,6 +32,8 @@ impl<'a> Impacts<'a> {
     pub(super) fn read(&self, measure: Measure) -> f64 {
         let first = |kind| self.only(kind).next().map(|event| self.instant(event));
         let last = self.only(EventKind::FloorContact).last();
+        // A face that cannot pull may push again while the particle leaves it.
+        let approached = self.only(EventKind::FloorContact).rfind(|event| event.approach <= 0.0);
         let number = match measure {
             Measure::FloorImpactTime => first(EventKind::FloorContact),
             Measure::FloorReleaseTime => first(EventKind::FloorRelease),
@@ -40,7 +42,7 @@ impl<'a> Impacts<'a> {
             Measure::FloorIntervalChange => {
                 self.intervals().last_chunk().map(|[before, after]: &[f64; 2]| (after - before).abs())
             }
-            Measure::FloorImpactSpeed => last.map(|event| event.approach.abs()),
+            Measure::FloorImpactSpeed => approached.map(|event| -event.approach),
             Measure::FloorImpactPhase => last.map(|event| TAU / self.period * event.time),
             Measure::FloorReboundSpeed => self.last_contact().map(|contact| contact.end.departure),
             Measure::FloorRestitution => self

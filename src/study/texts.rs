@@ -115,14 +115,14 @@ impl Texts {
     fn read_below(&mut self, folder: Folder, endings: &[&str]) -> Result<(), FileError> {
         let mut seen = BTreeSet::new();
         let (mut folders, mut links) = (vec![folder], Vec::new());
-        // Links wait until no real folder is left, in the order of their names.
+        // Links wait until no real folder is left; those that stand higher come first, then the order of their names.
         while let Some(folder) = folders.pop().or_else(|| links.pop()) {
             // Of a folder that has no real path listing tells why.
             if !seen.insert(folder.path.canonicalize().unwrap_or_else(|_| folder.path.clone())) {
                 continue;
             }
             self.list(&folder, endings, &mut folders, &mut links)?;
-            links.sort_by(|a, b| b.name.cmp(&a.name));
+            links.sort_by(|a, b| a.depth.cmp(&b.depth).then_with(|| b.name.cmp(&a.name)));
         }
         Ok(())
     }

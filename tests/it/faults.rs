@@ -226,12 +226,9 @@ fn a_place_that_cannot_be_written_to_is_named_and_the_rest_is_kept() {
 
 /// Told of itself, since who may do everything has no folder that refuses.
 #[test]
-fn a_right_that_lacks_is_told_with_what_to_do() {
+fn a_missing_permission_is_told_with_what_to_do() {
     for (kind, told) in [
-        (
-            std::io::ErrorKind::PermissionDenied,
-            "permission denied; give yourself the right to it (chmod), or work in a",
-        ),
+        (std::io::ErrorKind::PermissionDenied, "permission denied; change its permissions (chmod), or work in a"),
         (std::io::ErrorKind::ReadOnlyFilesystem, "its file system is read-only; work in a copy of the study elsewhere"),
     ] {
         let error = shotdamp::atomic::FileError { action: "lock", path: "results/.lock".into(), source: kind.into() };

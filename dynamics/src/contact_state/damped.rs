@@ -335,8 +335,8 @@ fn found(work: &mut Work) -> Option<Found> {
 
 const ONE: Complexes = Complexes { re: Four::new([1.0; WIDTH]), im: Four::ZERO };
 
-/// Room to work in, of one split after another. What is worked out step by step stands here: the compiler takes registers apart where
-/// it can follow them through many operations.
+/// Room to work in, of one split after another. Numbers of a step are kept in memory on purpose: as locals, the compiler splits their four
+/// lanes into scalars.
 #[derive(Default)]
 struct Work {
     /// Modes whose equations are at hand.
@@ -419,7 +419,8 @@ fn newton<const N: usize>(work: &mut Work) {
 }
 
 /// The same step where only the last row of C has anything beside its diagonal: as if no two other modes damped each other, which with
-/// a few dashpots leaves an error of 1e-5 of λ or less, and no smaller one when it is repeated. x is there but for its sign.
+/// a few dashpots leaves an error of 1e-5 of λ or less, and no smaller one when it is repeated. x is left with the opposite sign,
+/// which its squares do not show.
 #[inline(always)]
 fn nearer(work: &mut Work) {
     let (lambda, square) = (work.lambda, work.lambda.times(work.lambda));

@@ -193,7 +193,7 @@ impl States {
     }
 }
 
-/// One that is known, or a new one; the oldest of many that nobody holds gives its room to that.
+/// One that is known, or a new one; the oldest of many that nobody holds gives its room to that, and if all are held the oldest is forgotten.
 #[inline]
 fn visit<T>(
     known: &ByContact<T>,
@@ -208,7 +208,7 @@ fn visit<T>(
         }
         if states.len() >= MOST_DAMPINGS {
             let free = states.iter().position(|state| Rc::strong_count(state) == 1);
-            oldest = Rc::into_inner(states.remove(free.unwrap_or_default()));
+            oldest = Rc::into_inner(states.remove(free.unwrap_or(0)));
         }
     }
     let new = Rc::new(build(oldest)?);
