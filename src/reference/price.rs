@@ -23,13 +23,11 @@ impl Price {
             let Some(TableState::Present(table)) = tables.get(id) else { continue };
             let [events, members, evaluations] =
                 ["events", "members", "evaluations"].map(|name| table.floats(name).unwrap_or_default());
-            let failures = table.texts("failure");
             for row in rows {
                 let count = |column: &[f64]| column.get(*row).copied().filter(|count| *count >= 0.0);
-                let failed = failures.as_ref().is_some_and(|reasons| !reasons[*row].is_empty());
                 price.rows += 1;
                 price.runs += match [&members, &evaluations].map(|column| count(column)) {
-                    [Some(0.0), None] if !failed => 0,
+                    [Some(0.0), None] if !table.has_failed(*row) => 0,
                     counts => whole(counts.into_iter().flatten().fold(1.0, f64::max)),
                 };
                 price.events += whole(count(&events).unwrap_or(0.0));

@@ -86,8 +86,8 @@ impl Proof<'_> {
     /// All its numbers come from closed forms: there is no balance that could close.
     fn needs_no_run(&self) -> bool {
         let members = self.table.floats("members").unwrap_or_default();
-        let failed = |row: usize| self.table.texts("failure").is_some_and(|reasons| !reasons[row].is_empty());
-        !members.is_empty() && members.iter().enumerate().all(|(row, members)| *members == 0.0 && !failed(row))
+        let mut rows = members.iter().enumerate();
+        !members.is_empty() && rows.all(|(row, members)| *members == 0.0 && !self.table.has_failed(row))
     }
 
     /// The finite numbers of a column.

@@ -137,6 +137,12 @@ impl Table {
         }
     }
 
+    /// True if the run of this row has failed.
+    #[must_use]
+    pub fn has_failed(&self, row: usize) -> bool {
+        self.texts("failure").and_then(|reasons| reasons.get(row)).is_some_and(|reason| !reason.is_empty())
+    }
+
     /// The time histories of a list column, one per row.
     #[must_use]
     pub fn lists(&self, name: &str) -> Option<&[Vec<f64>]> {

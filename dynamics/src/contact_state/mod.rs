@@ -129,21 +129,15 @@ impl Modes {
         damping: &[f64],
         room: Option<Self>,
     ) -> Result<Self, EngineError> {
-        let parts = |room: Self| {
-            let Self { contacts, damping, attached, spectral, to_blocks, columns, gravity, .. } = room;
-            (contacts, damping, attached, spectral, to_blocks, columns, gravity)
-        };
-        let (mut own, mut dashpots, mut attached, spectral, to_blocks, columns, gravity) =
-            room.map_or_else(Default::default, parts);
-        contacts.clone_into(&mut own);
-        damping.clone_into(&mut dashpots);
-        attached.clone_from(&bare.attached);
+        let (spectral, to_blocks, columns) =
+            room.map_or_else(Default::default, |room| (room.spectral, room.to_blocks, room.columns));
+        let attached = bare.attached.clone();
         let order = system.mass.order + attached.len();
         let across = Across::all(system, contacts, damping, &attached);
         let normal = bare.split(system, contacts, damping, spectral);
         let mut modes = Self {
-            contacts: own,
-            damping: dashpots,
+            contacts: contacts.to_vec(),
+            damping: damping.to_vec(),
             across,
             order,
             attached,
@@ -152,7 +146,7 @@ impl Modes {
             columns,
             is_normal: normal.is_some(),
             spectral: Spectral::default(),
-            gravity,
+            gravity: Rc::default(),
             bare,
         };
         modes.spectral = match normal {

@@ -222,11 +222,11 @@ impl Rows {
         blocks: &[Block],
         signal: impl Fn(&[f64], Vec<[f64; 4]>) -> Row,
     ) -> Self {
-        let Self { rows: old, mut weights, mut bends, mut guards, .. } = self;
-        let old = RefCell::new(old);
+        let Self { rows: spare, mut weights, mut bends, mut guards, .. } = self;
+        let spare = RefCell::new(spare);
         let signal = |row: &[f64]| {
-            let room = old.borrow_mut().pop().map(|old: Row| old.weights);
-            signal(row, room.unwrap_or_default())
+            let room = spare.borrow_mut().pop().map_or_else(Vec::new, |row| row.weights);
+            signal(row, room)
         };
         weights.clear();
         guards.clear();
