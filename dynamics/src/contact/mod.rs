@@ -115,7 +115,7 @@ impl Contact {
 
     /// The same at the floor, where the ceiling is such a face and moves with it: to the structure both are one contact.
     pub(crate) fn at_floor_alike(self, particle: &Particle) -> Self {
-        if particle.ceiling.as_ref() != Some(&particle.floor) {
+        if self == Self::Flight || particle.ceiling.as_ref() != Some(&particle.floor) {
             return self;
         }
         match (self.at(Side::Floor, particle), self.at(Side::Ceiling, particle)) {

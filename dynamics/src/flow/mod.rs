@@ -235,7 +235,8 @@ impl Flow {
             }
         }
         let mut drift = [[0.0; 2]; 2];
-        for (k, weight) in weights.iter().enumerate().filter(|_| self.drifts) {
+        let drifting = if self.drifts { &weights[..] } else { &[] };
+        for (k, weight) in drifting.iter().enumerate() {
             for (load, drift) in [&self.modes.gravity, &self.force].into_iter().zip(&mut drift) {
                 for (coefficient, part) in drift.iter_mut().zip([load.slope[k], load.bend[k]]) {
                     *coefficient += weight[0] * part[0] + weight[1] * part[1];

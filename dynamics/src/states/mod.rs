@@ -203,8 +203,10 @@ fn visit<T>(
 ) -> Result<Rc<T>, EngineError> {
     let mut oldest = None;
     if let Some(states) = known.borrow_mut().get_mut(contacts) {
-        if let Some(old) = states.iter().find(|state| fits(state)) {
-            return Ok(Rc::clone(old));
+        if let Some(place) = states.iter().position(|state| fits(state)) {
+            // Beyond the ends of its curve half cycles come to the same damping again and again.
+            states[place..].rotate_left(1);
+            return Ok(Rc::clone(&states[states.len() - 1]));
         }
         if states.len() >= MOST_DAMPINGS {
             let free = states.iter().position(|state| Rc::strong_count(state) == 1);
