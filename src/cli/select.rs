@@ -231,7 +231,7 @@ pub(super) fn hint(asked: &str, names: &BTreeSet<&str>, all: &str) -> String {
         return hint;
     }
     if names.is_empty() {
-        return "there are none that can be read".into();
+        return "there are none that can be read; `shotdamp check` says why".into();
     }
     let with_it: Vec<&str> = names.iter().copied().filter(|name| !asked.is_empty() && name.contains(asked)).collect();
     if with_it.is_empty() {

@@ -17,7 +17,7 @@ use super::select::{choose, matches, no_match};
 use super::thresholds;
 use crate::accuracy::{idle_cases, out_of_reach_in_words, unreached_cases};
 use crate::dynamics::{Allowance, Limit, Until, in_words};
-use crate::experiment::{Assumptions, Continuation, Experiment, RowSource, value_in_words};
+use crate::experiment::{Assumptions, Case, Continuation, Experiment, RowSource, value_in_words};
 use crate::measure::Settings;
 use crate::report::{LastVerdicts, VERDICTS, scenes};
 use crate::scene::{Scene, effects};
@@ -214,11 +214,16 @@ fn heading(experiment: &Experiment, file: &str) -> String {
     format!("{}: {}\n{place}{}\n\n{}\n", experiment.id, experiment.title, file, experiment.about)
 }
 
+/// The first scene that has all that there is to see: one without dampers hides what the others have.
 fn first_scene(assumptions: &Assumptions, experiment: &Experiment) -> String {
-    let first = experiment.cases.first();
+    let has_dampers = |case: &&Case| experiment.recipe_of(case).is_ok_and(|recipe| !recipe.without_dampers);
+    let (first, which) = match (experiment.cases.first(), experiment.cases.iter().find(has_dampers)) {
+        (Some(first), Some(with)) if first != with => (Some(with), "first case with dampers"),
+        (first, _) => (first, "first case"),
+    };
     let scene = first.and_then(|case| experiment.recipe_of(case).ok()?.resolve(assumptions).ok());
     let case = first.map(|case| case.describe()).filter(|case| !case.is_empty());
-    let mut text = format!("\nScene{}\n", case.map_or_else(String::new, |case| format!(" of the first case ({case})")));
+    let mut text = format!("\nScene{}\n", case.map_or_else(String::new, |case| format!(" of the {which} ({case})")));
     for line in scene.as_ref().map(Scene::describe).unwrap_or_default() {
         text += &format!("  {line}\n");
     }

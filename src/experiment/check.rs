@@ -338,11 +338,21 @@ impl Checks<'_> {
             let help = format!("add `{name}` to `measure`");
             self.findings.report::<()>(*span, format!("`{name}` is optimised, but not measured"), Some(help));
         }
+        let mut refused: Option<Span> = None;
         for (measure, span) in measures {
-            if measure.needs_trace() || measure.needs_shape() || measure.needs_energies() || measure.needs_multipliers()
-            {
+            let (needs_more, is_first) = (
+                measure.needs_trace()
+                    || measure.needs_shape()
+                    || measure.needs_energies()
+                    || measure.needs_multipliers(),
+                // One word may stand for several measures.
+                refused != Some(*span),
+            );
+            if needs_more && is_first {
                 let message = format!("`{}` is not measured in an optimisation", word_of(*measure));
-                self.findings.wrong::<()>(*span, message);
+                let help = "leave it out here; an experiment with the best gaps can measure it".to_owned();
+                self.findings.report::<()>(*span, message, Some(help));
+                refused = Some(*span);
             }
         }
         let evaluations = optimise.most_evaluations();

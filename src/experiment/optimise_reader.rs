@@ -97,7 +97,12 @@ pub(super) fn read_optimise(at: At<'_>) -> Option<ReadOptimise> {
     if (genetic.is_some() && stop.generations.is_none() || cma_es.is_some() && genetic.is_none())
         && stop.evaluations.is_none()
     {
-        let help = "add `stop: {generations: …}` or `stop: {evaluations: …}`".to_owned();
+        let help = if genetic.is_some() {
+            "add `stop: {generations: …}` or `stop: {evaluations: …}`"
+        } else {
+            "CMA-ES alone is bounded by evaluations: add `stop: {evaluations: …}`"
+        };
+        let help = help.to_owned();
         return at.report("nothing bounds this search", Some(help));
     }
     if let (Some((_, polish_at)), false) = (&polish, matches!(measure, Measure::RmsVelocity | Measure::VelocityRatio)) {

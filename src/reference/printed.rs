@@ -33,7 +33,7 @@ pub enum PrintedError {
 }
 
 /// Units by dimension, with their factor to the first of the dimension.
-const UNITS: [(&str, &[(&str, f64)]); 8] = [
+const UNITS: [(&str, &[(&str, f64)]); 9] = [
     ("a length", &[("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("µm", 1e-6)]),
     ("a velocity", &[("m/s", 1.0), ("mm/s", 1e-3)]),
     ("a time", &[("s", 1.0), ("ms", 1e-3)]),
@@ -41,6 +41,7 @@ const UNITS: [(&str, &[(&str, f64)]); 8] = [
     ("a force", &[("N", 1.0), ("kN", 1e3)]),
     ("an angle", &[("rad", 1.0)]),
     ("an acceleration", &[("m/s²", 1.0), ("g", 9.81)]),
+    ("a receptance", &[("m/N", 1.0), ("mm/N", 1e-3), ("µm/N", 1e-6)]),
     ("dimensionless", &[("", 1.0)]),
 ];
 
@@ -91,11 +92,13 @@ impl Printed {
         // What a measure is counted in can be printed, too, as it stands.
         let of_a_measure = || Measure::ALL.iter().any(|measure| measure.unit() == symbol);
         if unit(symbol).is_none() && !of_a_measure() {
-            let known: Vec<&str> = UNITS
-                .iter()
-                .flat_map(|(_, units)| units.iter().map(|(symbol, _)| *symbol))
-                .filter(|symbol| !symbol.is_empty())
-                .collect();
+            let mut known: Vec<&str> = Vec::new();
+            let printable = UNITS.iter().flat_map(|(_, units)| units.iter().map(|(symbol, _)| *symbol));
+            for symbol in printable.chain(Measure::ALL.iter().map(|measure| measure.unit())) {
+                if !symbol.is_empty() && !known.contains(&symbol) {
+                    known.push(symbol);
+                }
+            }
             return Err(PrintedError::UnknownUnit(symbol.into(), known.join(", ")));
         }
         Ok(Self { text: text.into(), value, half_unit, unit: symbol.into() })

@@ -191,10 +191,11 @@ fn numbers(judged: &[Judged]) -> String {
     ]);
     for one in judged {
         let Some(comparison) = &one.comparison else { continue };
+        let digits_shown = printed_digits(comparison).clamp(6, MOST_DIGITS);
         table.row([
             entry(one),
-            compact(comparison.published, MOST_DIGITS),
-            significant(comparison.simulated, printed_digits(comparison).clamp(6, MOST_DIGITS)),
+            compact(comparison.published, digits_shown),
+            significant(comparison.simulated, digits_shown),
             signed(comparison.error(), 2),
             significant(comparison.u_num, 2),
             significant(comparison.u_input, 2),

@@ -45,6 +45,7 @@ fn counts(all: &[&Judged]) -> String {
         sentences.push(format!("**Held out** of all fits: {agree} of {} agree.", held_out.len()));
     }
     sentences.push(match all.iter().filter(|one| !one.as_expected()).count() {
+        0 if all.is_empty() => "No published number or claim is judged.".to_owned(),
         0 => "Every verdict is the one that `reference/` expects.".to_owned(),
         1 => "**One verdict is not the expected one.**".to_owned(),
         more => format!("**{more} verdicts are not the expected ones.**"),

@@ -61,7 +61,7 @@ pub struct Published {
     pub experiments: BTreeMap<String, (BTreeSet<String>, Summary)>,
     /// Files of the study as a whole.
     pub of_the_study: BTreeSet<String>,
-    /// Experiments without a table here that those files have verdicts of: they are left as they are.
+    /// Experiments that cannot be judged here and that those files have verdicts of: they are left as they are.
     pub elsewhere: usize,
     /// Files that were written.
     pub written: usize,
@@ -89,7 +89,8 @@ struct Page<'a> {
 /// [`FileError`] if a file cannot be written.
 pub fn publish(study: &Study, judgement: &Judgement, ids: &BTreeSet<&str>) -> Result<Published, FileError> {
     let mut published = Published::default();
-    let pages: Vec<Page<'_>> = study.items.iter().filter_map(|item| page(study, item)).collect();
+    let pages = study.items.iter().filter_map(|item| page(study, item));
+    let pages: Vec<Page<'_>> = pages.filter(|page| !keeps_its_verdicts(study, page)).collect();
     let chosen = |page: &&Page<'_>| ids.contains(page.item.source.experiment.id.0.as_str());
     let stale = pages.iter().filter(chosen).filter(|page| page.stale);
     let jobs = stale.flat_map(jobs).filter(|(page, figure)| !is_drawn(study, judgement, page, figure));
@@ -110,20 +111,29 @@ pub fn publish(study: &Study, judgement: &Judgement, ids: &BTreeSet<&str>) -> Re
     Ok(published)
 }
 
-/// How many experiments without a table have a verdict in the reports, as in a study that was just cloned: the pages of the whole study
-/// would lose what is known of them.
+/// Whether a page on disk tells verdicts that nobody can judge now, as its reference cannot be read: it stays.
+fn keeps_its_verdicts(study: &Study, page: &Page<'_>) -> bool {
+    !is_reference_read(study, &page.item.source.experiment.id.0) && study.layout.path(&page_of(page)).exists()
+}
+
+fn is_reference_read(study: &Study, id: &str) -> bool {
+    study.unread.iter().all(|one| !one.file().starts_with("reference/") || stem(one.file()) != id)
+}
+
+/// How many experiments without a table, as in a study that was just cloned, or without a reference that can be read have a verdict in the
+/// reports: the pages of the whole study would lose what is known of them.
 fn judged_elsewhere(study: &Study) -> usize {
     let tables = study.tables();
-    let mut without_table = study.texts.ids();
-    without_table.retain(|id| !tables.contains_key(id));
-    if without_table.is_empty() {
+    let mut unjudged = study.texts.ids();
+    unjudged.retain(|id| !tables.contains_key(id) || !is_reference_read(study, id));
+    if unjudged.is_empty() {
         return 0;
     }
     let verdicts = fs::read_to_string(study.layout.path(VERDICTS)).unwrap_or_default();
     let verdicts = read_json(&verdicts).unwrap_or_default();
     let judged = verdicts.iter().filter(|one| one.verdict != word(Verdict::Missing));
     let judged: BTreeSet<&str> = judged.filter_map(|one| Some(one.id.split_once('/')?.0)).collect();
-    judged.intersection(&without_table).count()
+    judged.intersection(&unjudged).count()
 }
 
 /// Everything that a run would write under `reports/`, by name within the study; or why it cannot be made.

@@ -45,7 +45,7 @@ const EFFECTS: [Effect; 13] = [
     (
         "restitution",
         |scene| surfaces(scene).any(|surface| matches!(surface, Surface::Rigid { restitution } if *restitution > 0.0)),
-        "no rigid surface gives anything back: impacts are plastic, the particle sticks",
+        "no surface is rigid with a restitution above zero",
     ),
     (
         "resilient floor and ceiling",

@@ -5,9 +5,9 @@ use std::time::Duration;
 use cpu_time::ThreadTime;
 
 use super::threshold::missed;
-use crate::dynamics::{Allowance, Limit};
+use crate::dynamics::{Allowance, Limit, Matrix, Until};
 use crate::experiment::{Assumptions, Case, Experiment};
-use crate::measure::SolverChoice;
+use crate::measure::{Settings, SolverChoice};
 use crate::scene::{Scene, Surface};
 use crate::text::number::significant;
 
@@ -21,6 +21,8 @@ const MANY_DAMPERS: usize = 12;
 const MANY_MODES: usize = 100;
 /// Restitution from which on a particle takes very many bounces to come to rest.
 const ELASTIC: f64 = 0.999;
+/// Share of the free vibration that may be left where averages begin.
+const LEFT: f64 = 0.01;
 /// Processor time for which cases are looked at.
 const PATIENCE: Duration = Duration::from_millis(300);
 
@@ -65,6 +67,7 @@ enum Cause {
     Dampers,
     Modes,
     Bounces,
+    Transient,
 }
 
 fn of_scene(experiment: &Experiment, scene: &Scene, solvers: &[SolverChoice]) -> Vec<(Cause, String)> {
@@ -82,6 +85,7 @@ fn of_scene(experiment: &Experiment, scene: &Scene, solvers: &[SolverChoice]) ->
             warnings.push((Cause::Steps, format!("{steps} fixed steps take about {minutes} min a run")));
         }
     }
+    warnings.extend(transient(experiment, scene).map(|warning| (Cause::Transient, warning)));
     let count = scene.dampers.len();
     if count >= MANY_DAMPERS {
         let warning = format!("{count} dampers can be in 2^{count} contact states, each set up at its first visit");
@@ -104,4 +108,34 @@ fn of_scene(experiment: &Experiment, scene: &Scene, solvers: &[SolverChoice]) ->
         }
     }
     warnings
+}
+
+/// What is left of the first mode's free vibration where averages begin, e^(−a t), a = φᵀC φ/(2 φᵀM φ) without dampers: the averages carry
+/// it along, and their uncertainty does not know of it.
+fn transient(experiment: &Experiment, scene: &Scene) -> Option<String> {
+    let Settings { skip, until, .. } = experiment.settings;
+    if skip == 0 || until == Until::Settled {
+        return None;
+    }
+    let model = scene.structure.model();
+    let (matrices, shape) = (model.matrices(), model.mode(1));
+    let form = |matrix: &Matrix| {
+        let rows = matrix.entries.chunks_exact(matrix.order).zip(&shape);
+        rows.map(|(row, own)| own * row.iter().zip(&shape).map(|(entry, other)| entry * other).sum::<f64>())
+            .sum::<f64>()
+    };
+    let decay = form(&matrices.damping) / (2.0 * form(&matrices.mass)) * scene.excitation.period();
+    let left = libm::exp(-decay * f64::from(skip));
+    (left > LEFT).then(|| {
+        let enough = (-libm::log(LEFT) / decay).ceil();
+        let remedy = if enough < 1e9 {
+            format!("from skip: {enough} cycles on it is below 1 %")
+        } else {
+            "nothing damps it".into()
+        };
+        format!(
+            "after {skip} cycles {} % of the free vibration is left without dampers, and averages carry it; {remedy}",
+            significant(100.0 * left, 2)
+        )
+    })
 }
