@@ -14,6 +14,10 @@ impl Evaluated {
         // A table that is read again knows the motion only where it has the column.
         let motion = self.motion.filter(|_| measures.contains(&Measure::Motion));
         let mut reasons: Vec<(&str, Vec<String>)> = Vec::new();
+        let has_multipliers = measures
+            .iter()
+            .zip(&self.measured)
+            .any(|(measure, one)| *measure == Measure::LargestMultiplier && !one.value.is_nan());
         for (measure, one) in measures.iter().zip(&self.measured) {
             let is_named = measure.is_of_a_period() && motion.is_some_and(|kind| !kind.repeats());
             let is_unnamed = measure.needs_motion() && self.motion.is_none() && measures.contains(&Measure::Motion);
@@ -21,7 +25,11 @@ impl Evaluated {
             if measure.is_name() || is_named || is_unnamed || !one.value.is_nan() {
                 continue;
             }
-            let (why, name) = (measure.why_undefined(motion, one), measure.name_undefined());
+            let (why, name) = if has_multipliers && *measure == Measure::MultiplierResidual {
+                ("the product of the multipliers is below the range of numbers", words::of_key(measure))
+            } else {
+                (measure.why_undefined(motion, one), measure.name_undefined())
+            };
             match reasons.iter_mut().find(|(known, _)| *known == why) {
                 Some((_, names)) if names.contains(&name) => {}
                 Some((_, names)) => names.push(name),

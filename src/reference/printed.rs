@@ -33,12 +33,13 @@ pub enum PrintedError {
 }
 
 /// Units by dimension, with their factor to the first of the dimension.
-const UNITS: [(&str, &[(&str, f64)]); 9] = [
+const UNITS: [(&str, &[(&str, f64)]); 10] = [
     ("a length", &[("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("µm", 1e-6)]),
     ("a velocity", &[("m/s", 1.0), ("mm/s", 1e-3)]),
     ("a time", &[("s", 1.0), ("ms", 1e-3)]),
     ("a frequency", &[("Hz", 1.0), ("rad/s", 1.0 / std::f64::consts::TAU)]),
     ("a force", &[("N", 1.0), ("kN", 1e3)]),
+    ("an impulse", &[("N s", 1.0)]),
     ("an angle", &[("rad", 1.0)]),
     ("an acceleration", &[("m/s²", 1.0), ("g", 9.81)]),
     ("a receptance", &[("m/N", 1.0), ("mm/N", 1e-3), ("µm/N", 1e-6)]),
