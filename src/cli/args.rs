@@ -182,7 +182,7 @@ Examples:
 pub(super) struct RunArgs {
     #[command(flatten)]
     pub choice: Choice,
-    /// Re-simulate regardless
+    /// Simulate again also what is up to date
     #[arg(long)]
     pub force: bool,
     /// Print what would be simulated, and stop
@@ -218,7 +218,7 @@ pub(super) struct GatherArgs {
     /// Number of shards; needed only if there are tables of several divisions
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub of: Option<u32>,
-    /// Gather regardless
+    /// Gather again also what is up to date
     #[arg(long)]
     pub force: bool,
     /// Fail if another run holds the lock, instead of waiting
@@ -296,7 +296,7 @@ fn days_of(month: u32, year: u32) -> u32 {
 #[command(after_help = "\
 Examples:
   shotdamp accuracy ch3-limit-stop
-  shotdamp accuracy --all --longest 2")]
+  shotdamp accuracy --all --longest 0.5       without the smallest steps of long runs")]
 pub(super) struct AccuracyArgs {
     /// Ids, patterns with * and ?, or files
     #[arg(value_name = "PATTERN", conflicts_with = "all")]
@@ -364,7 +364,7 @@ pub(super) struct CheckArgs {
     /// standard output, in the place of the verdicts
     #[arg(long, value_name = "FILE")]
     pub markdown: Option<Destination>,
-    /// The committed verdicts; by default those of this study's reports
+    /// With --markdown: the committed verdicts [default: reports/verdicts.json]
     #[arg(long, value_name = "FILE", requires = "markdown")]
     pub against: Option<PathBuf>,
     /// Print the worst verdicts as GitHub annotations, and append to $GITHUB_STEP_SUMMARY
@@ -379,7 +379,7 @@ pub(super) struct CheckArgs {
     /// Change the expected verdict of this entry (experiment/entry) in its file to the one that it got
     #[arg(long, value_name = "ID", requires = "reason", conflicts_with_all = ["patterns", "folder"])]
     pub accept: Option<String>,
-    /// Why; becomes the explanation of the entry
+    /// With --accept: why; becomes the explanation of the entry
     #[arg(long, value_name = "TEXT", requires = "accept")]
     pub reason: Option<String>,
 }
@@ -414,7 +414,7 @@ Examples:
   shotdamp new ch3-my-idea
   shotdamp new ch5-thin-plate --structure supported_plate")]
 pub(super) struct NewArgs {
-    /// Its id: small letters, digits and hyphens
+    /// Id of the experiment: lower-case letters, digits and hyphens
     pub id: String,
     /// Folder of `experiments/` [default: one whose name the id begins with, if there is one]
     #[arg(long, value_name = "DIR")]

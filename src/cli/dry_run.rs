@@ -8,7 +8,7 @@ use super::select::{Found, choose};
 use super::thresholds;
 use super::update::todo;
 use crate::study::{Extent, KnownRows, Layout, forecast};
-use crate::text::number::compact;
+use crate::text::number::{self, compact};
 use crate::text::words::{capitalised, counted};
 
 /// Prints it, and writes nothing.
@@ -51,10 +51,11 @@ pub(super) fn dry_run(layout: &Layout, found: Found, args: &RunArgs, common: &Ar
 /// How many of the rows would be simulated.
 pub(super) fn rows(extent: &Extent) -> String {
     let Extent { to_do, rows, open, .. } = *extent;
+    let [to_do_in_words, rows] = [to_do, rows].map(|rows| number::count(rows as u64));
     match (to_do, open) {
         (0, _) => format!("none of {rows} rows to simulate: earlier tables have them"),
-        (_, true) => format!("{to_do} of {rows} rows to simulate, and those that follow where curves bend"),
-        (_, false) => format!("{to_do} of {rows} rows to simulate"),
+        (_, true) => format!("{to_do_in_words} of {rows} rows to simulate, and those that follow where curves bend"),
+        (_, false) => format!("{to_do_in_words} of {rows} rows to simulate"),
     }
 }
 

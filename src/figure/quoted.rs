@@ -17,6 +17,8 @@ const STRETCH: f64 = 3.0;
 /// Where the bar of the first line of a panel stands, as a share of the frame from its end, and the distance of the next.
 const FIRST_BAR: f64 = 0.04;
 const BAR_APART: f64 = 0.035;
+/// How near to the end of a bar a label seems to be that of its line.
+const BESIDE: f64 = 6.0 * QUOTED;
 
 /// A number that the study's text quotes.
 #[derive(Debug, Clone, PartialEq)]
@@ -111,16 +113,11 @@ impl Quoted {
         if let Some(ends) = self.visible_bar(number, panel, frame) {
             obstacles.lines.push(ends.map(|(end, _)| end).to_vec());
         }
-        match self.at {
-            QuotedAt::Point { .. } => {
+        match self.line(panel, frame) {
+            Some(line) => obstacles.lines.push(line.to_vec()),
+            None => {
                 let spot = Rect { left: at.x, top: at.y, right: at.x, bottom: at.y };
                 obstacles.boxes.push(spot.grown(QUOTED + SPACE / 2.0));
-            }
-            QuotedAt::Place(_) => {
-                obstacles.lines.push(vec![Point { y: frame.top, ..at }, Point { y: frame.bottom, ..at }]);
-            }
-            QuotedAt::Level(_) => {
-                obstacles.lines.push(vec![Point { x: frame.left, ..at }, Point { x: frame.right, ..at }]);
             }
         }
     }
@@ -185,12 +182,10 @@ impl Quoted {
 
     /// The line or the diamond.
     pub(super) fn draw(&self, sheet: &Sheet, panel: &Panel<'_>, frame: &Rect) {
-        let at = self.place(panel, frame);
         let pen = Pen { color: INK, width: 1.2 * GUIDE, dash: DASH };
-        match self.at {
-            QuotedAt::Place(_) => sheet.line(&[Point { y: frame.bottom, ..at }, Point { y: frame.top, ..at }], pen),
-            QuotedAt::Level(_) => sheet.line(&[Point { x: frame.left, ..at }, Point { x: frame.right, ..at }], pen),
-            QuotedAt::Point { .. } => diamond(sheet, at, QUOTED),
+        match self.line(panel, frame) {
+            Some(line) => sheet.line(&line, pen),
+            None => diamond(sheet, self.place(panel, frame), QUOTED),
         }
     }
 
@@ -204,7 +199,12 @@ impl Quoted {
         let width = text_width(&text, NOTE_TEXT);
         let places = self.label_places(at, width, frame);
         let inside = || places.iter().filter(|place| place.lies_within(frame));
-        let Some(place) = taken.clearest(inside(), 1.0).or_else(|| inside().next()).copied() else { return };
+        let others = || panel.quoted.iter().enumerate().filter(|(other, _)| *other != number);
+        // There it would read as the label of another line.
+        let strays = |place: &Rect| others().any(|(other, one)| one.claims(place, other, panel, frame));
+        let own = inside().filter(|place| !strays(place));
+        let place = taken.clearest(own, 1.0).or_else(|| taken.clearest(inside(), 1.0)).or_else(|| inside().next());
+        let Some(place) = place.copied() else { return };
         taken.boxes.push(place);
         match self.at {
             QuotedAt::Place(_) => lead(sheet, Point { y: place.at(0.0, 0.5).y, ..at }, &place, 0.0),
@@ -215,6 +215,28 @@ impl Quoted {
         let start = if upright { place.at(0.5, 0.0) } else { place.at(0.0, 0.5) };
         let lettering = Lettering { text: &text, size: NOTE_TEXT, anchor: Anchor::Left, upright, color: INK };
         sheet.text_over_lines(start, &lettering);
+    }
+
+    /// Whether a label in this place would seem to be its own, as `number` of the panel: across its line, or in the row of its bar.
+    fn claims(&self, place: &Rect, number: usize, panel: &Panel<'_>, frame: &Rect) -> bool {
+        let Some(line) = self.line(panel, frame) else { return false };
+        let in_row = |ends: [(Point, bool); 2]| {
+            let [from, to] = ends.map(|(end, _)| end);
+            place.meets(Point { x: from.x - BESIDE, ..from }, Point { x: to.x + BESIDE, ..to })
+        };
+        // A line across has its bar upright: no row.
+        let bar = self.visible_bar(number, panel, frame).filter(|_| matches!(self.at, QuotedAt::Place(_)));
+        place.meets(line[0], line[1]) || bar.is_some_and(in_row)
+    }
+
+    /// From edge to edge of the frame, what stands for a missing coordinate.
+    fn line(&self, panel: &Panel<'_>, frame: &Rect) -> Option<[Point; 2]> {
+        let at = self.place(panel, frame);
+        match self.at {
+            QuotedAt::Place(_) => Some([Point { y: frame.bottom, ..at }, Point { y: frame.top, ..at }]),
+            QuotedAt::Level(_) => Some([Point { x: frame.left, ..at }, Point { x: frame.right, ..at }]),
+            QuotedAt::Point { .. } => None,
+        }
     }
 
     /// Where a label of this width may stand, the best places first; some leave the frame.
@@ -234,9 +256,9 @@ impl Quoted {
                     let top = down(share, width);
                     beside.map(|left| Rect { left, top, right: left + 2.0 * half, bottom: top + width })
                 });
-                // Beyond another line that stands close, with a line that leads there.
-                let further = [1.0, 2.0, 3.0].into_iter().flat_map(|times| {
-                    let away = SPACE / 2.0 + times * 2.0 * QUOTED;
+                // Beyond other lines that stand close, with a line that leads there.
+                let further = (1_u8..=8).flat_map(|times| {
+                    let away = SPACE / 2.0 + f64::from(times) * 2.0 * QUOTED;
                     steps(30).flat_map(move |share| {
                         [at.x + away, at.x - away - width].map(|x| about(x, down(share, 2.0 * half) + half))
                     })

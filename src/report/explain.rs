@@ -74,7 +74,7 @@ pub fn explain(view: &EntryView<'_>) -> String {
     if !view.unmoved.is_empty() {
         text += &format!(
             "\nIts experiment also depends on these, which were not moved: {}.\n\
-             `shotdamp explain --run {}` does, where they have one.\n",
+             `shotdamp explain --run {}` moves those that have other values.\n",
             names(&view.unmoved),
             judged.id
         );

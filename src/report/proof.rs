@@ -30,8 +30,8 @@ pub(super) fn section(table: Option<&Table>) -> String {
             proof.smallest_margin(),
             match (proof.total("chaotic").as_str(), proof.largest("members").as_str()) {
                 ("0", _) => String::new(),
-                (chaotic, "1") => format!("; chaotic: {chaotic}, each a single run"),
-                (chaotic, most) => format!("; run as ensembles: {chaotic}, of up to {most} members"),
+                (chaotic, "1") => format!("; chaotic rows: {chaotic}, each of a single run"),
+                (chaotic, most) => format!("; chaotic rows: {chaotic}, run as ensembles of up to {most} members"),
             }
         );
     }
