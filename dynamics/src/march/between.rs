@@ -13,7 +13,7 @@ use crate::system::Law;
 
 /// Roundings of a distance that a bounce has to rise above.
 const SEVERAL: f64 = 16.0;
-/// A face that takes less than this share of a bounce's energy gives it back: no bounce dies away there within a run.
+/// Share of its energy that a bounce has to take if bounces are to die away before rounding has added up over too many of them.
 const LEAST_LOSS: f64 = 1e-6;
 
 impl<E: Effects> March<'_, E> {
@@ -202,9 +202,7 @@ impl<E: Effects> March<'_, E> {
         let push = (stiffness * here.gap).abs() + (self.damping_on(j, other) * here.rate).abs();
         let back = (push / particle.mass + self.system.gravity) * carried;
         let rounding = self.noise(j, side, here).max(self.noise(j, other, here));
-        let loss = 1.0 - restitution * restitution;
-        let loss = if loss > LEAST_LOSS { loss } else { 1.0 };
-        STICKING_SPEED.max((SEVERAL * back * rounding / loss).sqrt())
+        least_bounce(SEVERAL * back * rounding, restitution)
     }
 
     /// Damping of a face, N s/m.
@@ -238,6 +236,15 @@ impl<E: Effects> March<'_, E> {
         let growth = -other.away() * stiffness * here.rate - damping * bend;
         [push / particle.mass, growth / particle.mass]
     }
+}
+
+/// The speed below which a bounce counts as none, where each one adds so much to u² by rounding. Bounces that take a share of it hold
+/// the sum of 1 / share of them, but no more than a run has. What does not die away within so many is not at an end: sticking may
+/// take no more of the energy than they would, and of one that takes nothing, nothing.
+fn least_bounce(added: f64, restitution: f64) -> f64 {
+    let loss = 1.0 - restitution * restitution;
+    let taken = (loss / LEAST_LOSS).min(1.0);
+    taken.sqrt() * STICKING_SPEED.max((added / loss.max(LEAST_LOSS)).sqrt())
 }
 
 #[cfg(test)]
@@ -295,5 +302,19 @@ mod tests {
                 assert!(off < 1e-7, "restitution {restitution}: {off:e}");
             }
         }
+    }
+
+    #[test]
+    fn a_bounce_that_counts_as_none_gets_slower_without_a_step_as_the_face_takes_less_and_is_none_where_it_takes_nothing()
+     {
+        let restitution = |loss: f64| (1.0 - loss).sqrt();
+        let speed = |loss: f64| least_bounce(1e-14, restitution(loss));
+        for loss in [1e-2, 1e-4, 1.0000001e-6, 0.9999999e-6, 1e-8, 1e-10] {
+            let ratio = speed(loss) / speed(1.001 * loss);
+            assert!((ratio - 1.0).abs() < 1e-3, "a loss of {loss}: {ratio}");
+        }
+        // Where bounces die away they hold a sum of 1 / loss roundings.
+        assert!((speed(1e-4) / 1e-5 - 1.0).abs() < 1e-9);
+        assert_eq!(least_bounce(1e-14, 1.0), 0.0);
     }
 }
