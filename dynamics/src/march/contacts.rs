@@ -175,7 +175,9 @@ impl<E: Effects> March<'_, E> {
         self.changed = true;
         self.contacts[j] = side.pressed();
         // It comes with a speed, however smoothly the other face has just let go of it.
-        self.smooth[j] = false;
+        if E::ALL {
+            self.smooth[j] = false;
+        }
         self.record(j, side.made(), rate, rate);
     }
 
