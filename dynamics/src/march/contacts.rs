@@ -174,6 +174,10 @@ impl<E: Effects> March<'_, E> {
         self.particles[j] = Relative { gap: 0.0, rate };
         self.changed = true;
         self.contacts[j] = side.pressed();
+        // It comes with a speed, however smoothly the other face has just let go of it.
+        if E::ALL {
+            self.smooth[j] = false;
+        }
         self.record(j, side.made(), rate, rate);
     }
 
