@@ -21,6 +21,8 @@ const KEPT: f64 = 0.06;
 const STRAIGHT: f64 = 0.9;
 /// Share of the way to the graze of a contact that slows down, that one step may go.
 const TOWARDS: f64 = 0.5;
+/// Steps, tried or made, from one point that is kept to the next.
+const MOST_STEPS: usize = 400;
 /// Halvings between a sequence of contacts and the next.
 const HALVINGS: usize = 60;
 /// Clearance in units of the motion, of a branch that ends where a contact begins.
@@ -153,9 +155,15 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         let mut step = self.along.step;
         self.keep(&at, None)?;
         self.slowing.watch(&at.shot, at.share);
+        let (mut steps, mut kept) = (0, self.points.len());
         loop {
             if self.points.len() >= self.along.points {
                 return self.end(&at, BranchEnd::Points);
+            }
+            steps = if self.points.len() == kept { steps + 1 } else { 0 };
+            kept = self.points.len();
+            if steps > MOST_STEPS {
+                return self.end(&at, BranchEnd::Sensitive);
             }
             let tried = self.limited(&at, step);
             match self.advance(&at, tried)? {

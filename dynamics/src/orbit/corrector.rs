@@ -142,6 +142,9 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
             if distance <= settled || (distance <= ROUNDING && distance > 0.5 * last) {
                 let distance = distance.min(CLOSED);
                 let shot = shot.in_own_units(&system);
+                if leaves(&from.shot, &shot) {
+                    return Err(shot.unsolved().into());
+                }
                 let Solved { x: tangent, determinant } = self.tangent(&shot, share, &from.onwards(&shot))?;
                 return Ok(At { share, shot, distance, tangent, determinant });
             }
@@ -199,6 +202,12 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
         tangent.determinant *= all;
         Ok(tangent)
     }
+}
+
+/// The step has come to the branch that this one begins at: to its motion, several times over, or to that which comes again upside down
+/// after half a period.
+fn leaves(from: &Shot, to: &Shot) -> bool {
+    to.shortest_period() < to.tape.ends.len() || to.has_lost_its_asymmetry(from)
 }
 
 /// The speed of the slowest contact, as a share of what is slow; 1 at most.

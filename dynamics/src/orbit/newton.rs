@@ -19,8 +19,6 @@ const MOST_RUNS: usize = 60;
 const HALVINGS: usize = 5;
 /// Share of the motion within which a state may be on its way to come again.
 const NEAR: f64 = 1e-2;
-/// Two states of a period are the same within this.
-const SAME: f64 = 1e-9;
 
 impl Orbit {
     /// The orbit of so many cycles next to a state at phase 0. One that comes again after a part of them is given with that period.
@@ -82,13 +80,10 @@ fn repeats(system: &HybridSystem) -> Result<(), OrbitError> {
 pub(super) fn find(system: &HybridSystem, start: End, cycles: u32) -> Result<Orbit, OrbitError> {
     repeats(system)?;
     let (shot, distance) = closed(system, start, cycles)?;
-    let same = |part: &u32| {
-        cycles.is_multiple_of(*part) && shot.scale.apart(&shot.start, &shot.tape.ends[*part as usize - 1]) <= SAME
+    let (shot, distance) = match shot.shortest_period() as u32 {
+        part if part < cycles => closed(system, shot.start, part)?,
+        _ => (shot, distance),
     };
-    if let Some(part) = (1..cycles).find(same) {
-        let (shot, distance) = closed(system, shot.start, part)?;
-        return shot.orbit(system, distance);
-    }
     shot.orbit(system, distance)
 }
 

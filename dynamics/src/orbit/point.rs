@@ -48,6 +48,8 @@ pub enum BranchEnd<E> {
     CycleStart,
     /// As many points as were asked for.
     Points,
+    /// So small a disturbance leads away from the orbit that steps to the next one are too short to get on.
+    Sensitive,
     /// No orbit is found beyond the last point.
     Orbit(OrbitError),
     /// There is no system beyond the last point.

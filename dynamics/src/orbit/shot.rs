@@ -24,6 +24,12 @@ const INVERSE_ITERATIONS: usize = 3;
 /// Halves of a period differ, if by more than this, in units of the motion.
 const DIFFERS: f64 = 1e-8;
 
+/// A motion without symmetry comes to one that has it by steps that are shorter than this many of these.
+const FAR: f64 = 1e3;
+
+/// Two states of a period are the same within this, in units of the motion.
+const SAME: f64 = 1e-9;
+
 /// Instants that are one, as a share of a cycle.
 const COINCIDES: f64 = 1e-6;
 
@@ -80,6 +86,14 @@ impl Shot {
     /// It leads to no orbit.
     pub(super) fn unsolved(&self) -> OrbitError {
         OrbitError::NoConvergence { cycles: self.tape.ends.len() as u32, miss: self.misses_by() }
+    }
+
+    /// Cycles after which an orbit comes again for the first time.
+    pub(super) fn shortest_period(&self) -> usize {
+        let ends = &self.tape.ends;
+        let comes_again =
+            |part: &usize| ends.len().is_multiple_of(*part) && self.scale.apart(&self.start, &ends[part - 1]) <= SAME;
+        (1..ends.len()).find(comes_again).unwrap_or(ends.len())
     }
 
     /// By how much the second half of the period differs from the first, in units of the motion; `None` of an odd number of cycles.
@@ -182,8 +196,25 @@ impl Shot {
         })
     }
 
+    /// The mean displacement in units of the motion: zero of one that comes again upside down after half a period, and of opposite signs
+    /// of two that are each other's mirror image.
+    fn mean(&self) -> f64 {
+        self.response.window().mean_displacement() / self.scale.unit(0)
+    }
+
+    /// One of two neighbours is like the mirror image of the other: between them is a motion that comes again upside down.
+    pub(super) fn swaps_sides(&self, next: &Self) -> bool {
+        let [own, other] = [self.mean(), next.mean()];
+        own.abs().min(other.abs()) > DIFFERS && own * other < 0.0 && self.has_both_sides()
+    }
+
+    /// It comes again upside down, unlike a neighbour by far.
+    pub(super) fn has_lost_its_asymmetry(&self, before: &Self) -> bool {
+        self.mean().abs() <= DIFFERS && before.mean().abs() > FAR * DIFFERS && self.has_both_sides()
+    }
+
     /// Each contact has one upside down at the other face of the particle, be it at another instant or speed.
-    pub(super) fn has_both_sides(&self) -> bool {
+    fn has_both_sides(&self) -> bool {
         let kinds = |event: &Event| (event.particle, event.kind);
         let mirrored = |event: &Event| (event.particle, upside_down(event.kind));
         let count = |of: (usize, EventKind)| self.response.events.iter().filter(|event| kinds(event) == of).count();

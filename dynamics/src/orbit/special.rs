@@ -10,6 +10,8 @@ use crate::system::HybridSystem;
 
 /// Evaluations of a test function.
 const EVALUATIONS: usize = 60;
+/// A step below which points in between need not be found.
+const NARROW: f64 = 1e-4;
 /// Shares of the range that are one.
 const LOCATED: f64 = 1e-13;
 /// A pair that has become complex away from the unit circle has not crossed it.
@@ -93,8 +95,8 @@ pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
     Ok(Between::Specials(found.into_iter().map(|(_, special, at)| (special, at)).collect()))
 }
 
-/// Where a function of the points of a branch vanishes between two of them, by regula falsi (Illinois). `None` where points in between
-/// are not found.
+/// Where a function of the points of a branch vanishes between two of them, by regula falsi (Illinois); an error where points in between
+/// are not found: a shorter step may find them.
 pub(super) fn zero<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
     path: &mut Path<F>,
     from: &At,
@@ -110,8 +112,9 @@ pub(super) fn zero<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
         let place = if i % 8 < 7 && chord > low.0 && chord < high.0 { chord } else { middle };
         let at = match path.correct(from, place) {
             Ok(at) => at,
-            Err(BranchError::Orbit(_)) => break,
-            Err(other) => return Err(other),
+            // Shorter steps would not get over it.
+            Err(BranchError::Orbit(_)) if step <= NARROW => break,
+            Err(error) => return Err(error),
         };
         let now = value(&at)?;
         if best.as_ref().is_none_or(|(_, least, _)| now.abs() <= least.abs()) {

@@ -4,7 +4,10 @@ use std::convert::Infallible;
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix2, Vector2};
-use shotdamp::dynamics::{Along, Branch, BranchEnd, BranchPoint, EventKind, HybridSystem, Orbit, Special, StartState};
+use shotdamp::dynamics::{
+    Along, Branch, BranchEnd, BranchPoint, Contact, Drive, EventKind, Face, HybridSystem, Law, Matrix, Options, Orbit,
+    Particle, Special, StartState, Tick,
+};
 use shotdamp::scene::Excitation;
 
 use super::bench::{base, close, damper, in_flight, rigid, scene, system, within};
@@ -120,6 +123,71 @@ fn a_cascade_doubles_again_where_the_iterated_map_does() {
         branch = doubled;
     }
     assert!(branch.points[1..].iter().all(|point| point.orbit.cycles == 8));
+}
+
+#[test]
+fn doubled_motions_end_where_they_meet_the_shorter_one_and_branches_from_both_ends_agree() {
+    // One mass with a particle between unlike resilient faces, struck once a cycle: 4 cycles double to 8 and come back to 4 twice.
+    let face = |stiffness, damping| Face {
+        row: vec![1.0],
+        law: Law::Resilient { stiffness, damping, no_tension: false, stop: None },
+    };
+    let stiffness = 450.5_f64;
+    let systems = |impulse: f64| {
+        Ok::<HybridSystem, Infallible>(HybridSystem {
+            mass: Matrix::diagonal(&[1.0]),
+            damping: Matrix::diagonal(&[0.2 * stiffness.sqrt()]),
+            stiffness: Matrix::diagonal(&[stiffness]),
+            gravity: 0.0,
+            particles: vec![Particle {
+                mass: 0.03217,
+                floor: face(1862.0, 4.987),
+                ceiling: Some(face(7784.0, 1.05)),
+                gap: 0.01806,
+            }],
+            force_row: vec![1.0],
+            drive: Drive {
+                period: 0.20095,
+                ticks: vec![Tick { time: 0.0, impulse, level: 0.0 }],
+                repeats: true,
+                harmonic: None,
+                half_cycles: None,
+            },
+            observed_rows: vec![vec![1.0]],
+            momentum_rows: vec![vec![1.0]],
+        })
+    };
+    let along = Along { from: 0.5, to: 0.9, step: 0.02, points: 200 };
+    let system = systems(0.71).expect("it compiles");
+    let start = StartState::Given { q: vec![0.01], rate: vec![0.1], particles: vec![(Contact::Flight, 0.01, -0.2)] };
+    let settled = Options { skip: 200, average: 50, start, ..Options::default() };
+    let orbit = Orbit::after(&system, &settled).expect("it settles");
+    assert_eq!(orbit.cycles, 4);
+    let upwards = Branch::follow(systems, &orbit, 0.71, along).expect("it has a first orbit");
+    let doublings = special(&upwards, Special::PeriodDoubling);
+    let branches: Vec<_> = doublings
+        .iter()
+        .map(|doubling| (doubling.parameter, Branch::doubled(systems, doubling, along).expect("it begins there")))
+        .collect();
+    assert_eq!(branches.len(), 3);
+    for (_, branch) in &branches {
+        assert_eq!(branch.end, BranchEnd::HalfPeriod);
+        for point in &branch.points[1..] {
+            let system = systems(point.parameter).expect("it compiles");
+            let again = Orbit::near(&system, &point.orbit.start, 8).expect("it closes");
+            assert_eq!(again.cycles, 8, "at {} N s", point.parameter);
+        }
+    }
+    // Two of them are one branch, followed from either end.
+    let ends = |branch: &Branch<Infallible>| branch.points.last().expect("it has points").parameter;
+    let [_, (low, up), (high, down)] = &branches[..] else { panic!("three doublings") };
+    within("the end above", ends(up), *high, 1e-3);
+    within("the end below", ends(down), *low, 1e-3);
+    let mut others = special(down, Special::PeriodDoubling);
+    others.reverse();
+    for (one, other) in special(up, Special::PeriodDoubling).iter().zip(others) {
+        close("a doubling of 8 cycles", one.parameter, other.parameter, 1e-9);
+    }
 }
 
 /// A particle without mass between two walls A sin φ and h + A sin φ (impact pair). The motion with an impact on each wall a cycle, half a
