@@ -212,6 +212,7 @@ fn readable(study: &Study) -> BTreeSet<&str> {
 /// The error of a pattern that none of the `ids` answers to.
 pub(super) fn no_match(pattern: &str, ids: &BTreeSet<&str>) -> CliError {
     let hint = match pattern.rsplit_once('/') {
+        _ if ids.is_empty() => "there are none that can be read; `shotdamp check` says why".into(),
         Some(_) if pattern.ends_with(".yaml") => hint(stem(pattern), ids, "shotdamp list"),
         Some(_) => "ids have no `/`: a folder is named with --folder, an entry with `shotdamp explain`".into(),
         None => hint(pattern.trim_end_matches(".yaml"), ids, "shotdamp list"),
@@ -231,7 +232,7 @@ pub(super) fn hint(asked: &str, names: &BTreeSet<&str>, all: &str) -> String {
         return hint;
     }
     if names.is_empty() {
-        return "there are none that can be read; `shotdamp check` says why".into();
+        return "there are none that can be read".into();
     }
     let with_it: Vec<&str> = names.iter().copied().filter(|name| !asked.is_empty() && name.contains(asked)).collect();
     if with_it.is_empty() {

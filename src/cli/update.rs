@@ -113,8 +113,8 @@ pub(super) fn conclude(study: &Study, choice: &Choice, done: Done) -> Result<Exi
     if elsewhere > 0 {
         let of = counted(elsewhere, "experiment", "experiments");
         print(&format!(
-            "The pages of the whole study stay as they are: they have verdicts of {of} that cannot be judged here. `shotdamp run` makes all \
-             tables, and these pages once every reference can be read.\n"
+            "The pages of the whole study stay as they are: they have verdicts of {of} without a table here, or whose reference cannot be read. \
+             `shotdamp run` makes all tables, and these pages once every reference can be read.\n"
         ))?;
     }
     print(&verdicts_of(&judgement, &chosen.ids))?;

@@ -94,7 +94,7 @@ fn distance(name: &str, comparison: &Comparison) -> String {
         None => "2 u_val are allowed".to_owned(),
     };
     format!(
-        "{name}E = {} in SI units, that is {} u_val; {allowed}. u_val = {} (u_num {}, u_input {}, u_D {})",
+        "{name}E = {}, that is {} u_val; {allowed}. u_val = {} (u_num {}, u_input {}, u_D {}), all in SI units",
         signed(comparison.error(), 3),
         significant(comparison.deviation(), 2),
         significant(comparison.u_val(), 2),

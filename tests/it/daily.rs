@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::desk::{Desk, STOP, THREE_GAPS, command, said, shotdamp, simulated};
+use crate::desk::{Desk, GAP_REFERENCE, STOP, THREE_GAPS, command, said, shotdamp, simulated};
 
 #[test]
 fn a_new_experiment_runs_as_it_is() {
@@ -356,6 +356,22 @@ fn options_that_have_to_be_chosen_from_are_named() {
     let wrong = shotdamp(&desk, &["new", "ch3-mine", "--structure", "clamped_bean"]);
     assert!(wrong.code == 2 && wrong.err.contains("clamped_beam"), "{}", wrong.err);
     assert!(shotdamp(&desk, &["list", "--help"]).out.contains("grep 'Fig. 18'"));
+}
+
+#[test]
+fn a_mistake_in_a_reference_leaves_its_verdicts_on_the_pages() {
+    let desk = simulated();
+    assert_eq!(shotdamp(&desk, &["run", "-q"]).code, 0);
+    let pages = ["README.md", "verdicts.json", "ch3/ch3-gap.md"].map(|page| format!("reports/{page}"));
+    let read = || pages.each_ref().map(|page| fs::read_to_string(desk.layout.path(page)).unwrap());
+    let judged = read();
+    desk.put("reference/ch3/ch3-gap.yaml", &GAP_REFERENCE.replace("says:", "sais:"));
+    let run = shotdamp(&desk, &["run"]);
+    assert!(run.code == 2 && run.out.contains("whose reference cannot be read"), "{}{}", run.out, run.err);
+    assert_eq!(read(), judged);
+    desk.put("reference/ch3/ch3-gap.yaml", GAP_REFERENCE);
+    assert_eq!(shotdamp(&desk, &["run", "-q"]).code, 0);
+    assert_eq!(read(), judged);
 }
 
 #[test]

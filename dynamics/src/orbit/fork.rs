@@ -49,8 +49,8 @@ pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
             return Ok(Some(Fork::Joins));
         }
         if (turn - middle).abs() <= TURNS {
-            // A fold in the same step as a graze.
-            return Ok(None);
+            // A fold in the same step as a graze looks the same; there the motion has no mirror image.
+            return Ok(from.shot.has_both_sides().then_some(Fork::Joins));
         }
     }
     Ok(interpolated(path, from, step * middle, DISTANCE.min(OF_STEP * step))?

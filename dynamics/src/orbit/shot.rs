@@ -1,5 +1,6 @@
 //! One run over the period from a state at phase 0: by how much it misses itself, and the map about it.
 
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 use nalgebra::DMatrix;
@@ -24,7 +25,7 @@ const INVERSE_ITERATIONS: usize = 3;
 /// Halves of a period differ, if by more than this, in units of the motion.
 const DIFFERS: f64 = 1e-8;
 
-/// A motion without symmetry comes to one that has it by steps that are shorter than this many of these.
+/// A step along a branch does not take away an asymmetry that is so many times what counts as none.
 const FAR: f64 = 1e3;
 
 /// Two states of a period are the same within this, in units of the motion.
@@ -43,6 +44,8 @@ pub(super) struct Shot {
     /// The run itself.
     pub(super) response: Response,
     pub(super) tape: Tape,
+    /// A cycle of the drive, s.
+    cycle: f64,
 }
 
 impl Shot {
@@ -64,7 +67,7 @@ impl Shot {
     fn in_units(system: &HybridSystem, start: End, scale: Scale, response: Response, tape: Tape) -> Self {
         let map = Period::new(system, &scale, tape.last(tape.ends.len()));
         let miss = scale.miss(&start, end(&tape)).collect();
-        Self { start, scale, map, miss, response, tape }
+        Self { start, scale, map, miss, response, tape, cycle: system.drive.period }
     }
 
     /// The same in units of this motion.
@@ -196,25 +199,33 @@ impl Shot {
         })
     }
 
-    /// The mean displacement in units of the motion: zero of one that comes again upside down after half a period, and of opposite signs
-    /// of two that are each other's mirror image.
-    fn mean(&self) -> f64 {
-        self.response.window().mean_displacement() / self.scale.unit(0)
+    /// Σ u |u| (1, cos 2φ, sin 2φ) over all contacts, with the speed u in units of the motion's and the phase φ in the period: zero of a
+    /// motion that comes again upside down after half a period, and opposite of two that are each other's mirror image.
+    fn asymmetry(&self) -> [f64; 3] {
+        let whole = self.tape.ends.len() as f64 * self.cycle;
+        let contacts = self.response.events.iter().filter(|event| event.kind.is_contact());
+        contacts.fold([0.0; 3], |[sum, even, odd], event| {
+            let weight = self.share_of_speed(event.approach).powi(2).copysign(event.approach);
+            let (sin, cos) = libm::sincos(2.0 * TAU * (since_start(event, self.cycle) / whole));
+            [sum + weight, even + weight * cos, odd + weight * sin]
+        })
     }
 
     /// One of two neighbours is like the mirror image of the other: between them is a motion that comes again upside down.
     pub(super) fn swaps_sides(&self, next: &Self) -> bool {
-        let [own, other] = [self.mean(), next.mean()];
-        own.abs().min(other.abs()) > DIFFERS && own * other < 0.0 && self.has_both_sides()
+        let (here, there) = (self.asymmetry(), next.asymmetry());
+        let [own, other] = [&here, &there].map(|asymmetry| length(asymmetry));
+        own.min(other) > DIFFERS && dot(&here, &there) < -0.5 * own * other && self.has_both_sides()
     }
 
     /// It comes again upside down, unlike a neighbour by far.
     pub(super) fn has_lost_its_asymmetry(&self, before: &Self) -> bool {
-        self.mean().abs() <= DIFFERS && before.mean().abs() > FAR * DIFFERS && self.has_both_sides()
+        let [own, other] = [self, before].map(|shot| length(&shot.asymmetry()));
+        own <= DIFFERS && other > FAR * DIFFERS && self.has_both_sides()
     }
 
     /// Each contact has one upside down at the other face of the particle, be it at another instant or speed.
-    fn has_both_sides(&self) -> bool {
+    pub(super) fn has_both_sides(&self) -> bool {
         let kinds = |event: &Event| (event.particle, event.kind);
         let mirrored = |event: &Event| (event.particle, upside_down(event.kind));
         let count = |of: (usize, EventKind)| self.response.events.iter().filter(|event| kinds(event) == of).count();

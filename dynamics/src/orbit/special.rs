@@ -64,24 +64,8 @@ pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
     to: &At,
     step: f64,
 ) -> Result<Between, BranchError<E>> {
-    let outside = |at: &At| -> Result<usize, BranchError<E>> {
-        Ok(pairs(&multipliers(at)?).iter().filter(|modulus| **modulus > 1.0 + NEUTRAL).count())
-    };
-    let mut tests = vec![(Test::Fold, Special::Fold), (Test::PeriodDoubling, Special::PeriodDoubling)];
-    let (before, after) = (outside(from)?, outside(to)?);
-    if before != after {
-        tests.push((Test::Torus(before.min(after)), Special::Torus));
-    }
+    // A branch that ends here turns here, too, and orbits next to that place are hard to find.
     let mut found = Vec::new();
-    for (test, special) in tests {
-        let ends = [test.value(from)?, test.value(to)?];
-        if ends[0] * ends[1] < 0.0
-            && let Some((place, at)) = zero(path, from, step, ends, |at| test.value(at))?
-            && (!matches!(test, Test::Torus(_)) || test.value(&at)?.abs() < CROSSES)
-        {
-            found.push((place, special, at));
-        }
-    }
     match fork::between(path, from, to, step)? {
         Some(Fork::Begins(place, at)) => {
             let period = path.system(at.share)?.drive.period;
@@ -90,6 +74,23 @@ pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
         }
         Some(Fork::Joins) => return Ok(Between::Symmetry),
         None => {}
+    }
+    let outside = |at: &At| -> Result<usize, BranchError<E>> {
+        Ok(pairs(&multipliers(at)?).iter().filter(|modulus| **modulus > 1.0 + NEUTRAL).count())
+    };
+    let mut tests = vec![(Test::Fold, Special::Fold), (Test::PeriodDoubling, Special::PeriodDoubling)];
+    let (before, after) = (outside(from)?, outside(to)?);
+    if before != after {
+        tests.push((Test::Torus(before.min(after)), Special::Torus));
+    }
+    for (test, special) in tests {
+        let ends = [test.value(from)?, test.value(to)?];
+        if ends[0] * ends[1] < 0.0
+            && let Some((place, at)) = zero(path, from, step, ends, |at| test.value(at))?
+            && (!matches!(test, Test::Torus(_)) || test.value(&at)?.abs() < CROSSES)
+        {
+            found.push((place, special, at));
+        }
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     Ok(Between::Specials(found.into_iter().map(|(_, special, at)| (special, at)).collect()))
