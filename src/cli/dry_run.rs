@@ -51,11 +51,11 @@ pub(super) fn dry_run(layout: &Layout, found: Found, args: &RunArgs, common: &Ar
 /// How many of the rows would be simulated.
 pub(super) fn rows(extent: &Extent) -> String {
     let Extent { to_do, rows, open, .. } = *extent;
-    let [to_do_in_words, rows] = [to_do, rows].map(|rows| number::count(rows as u64));
+    let [to_do_shown, rows_shown] = [to_do, rows].map(|rows| number::count(rows as u64));
     match (to_do, open) {
-        (0, _) => format!("none of {rows} rows to simulate: earlier tables have them"),
-        (_, true) => format!("{to_do_in_words} of {rows} rows to simulate, and those that follow where curves bend"),
-        (_, false) => format!("{to_do_in_words} of {rows} rows to simulate"),
+        (0, _) => format!("none of {rows_shown} rows to simulate: earlier tables have them"),
+        (_, true) => format!("{to_do_shown} of {rows_shown} rows to simulate, and those that follow where curves bend"),
+        (_, false) => format!("{to_do_shown} of {rows_shown} rows to simulate"),
     }
 }
 

@@ -12,7 +12,7 @@ use crate::study::{LockError, RunError};
 
 #[derive(Debug, thiserror::Error)]
 pub(super) enum CliError {
-    #[error("there is no study here: no folder `experiments` in {} or above it; make that folder to begin one, or name another with --root", from_here(.0))]
+    #[error("there is no study here: no folder `experiments` in {} or above it; make that folder to begin a study, or name a study with --root", from_here(.0))]
     NoStudy(PathBuf),
     #[error("there is no study in {}: it has no folder `experiments`", from_here(.0))]
     NoStudyAt(PathBuf),

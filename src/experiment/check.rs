@@ -340,14 +340,12 @@ impl Checks<'_> {
         }
         let mut refused: Option<Span> = None;
         for (measure, span) in measures {
-            let (needs_more, is_first) = (
-                measure.needs_trace()
-                    || measure.needs_shape()
-                    || measure.needs_energies()
-                    || measure.needs_multipliers(),
-                // One word may stand for several measures.
-                refused != Some(*span),
-            );
+            let needs_more = measure.needs_trace()
+                || measure.needs_shape()
+                || measure.needs_energies()
+                || measure.needs_multipliers();
+            // One word may stand for several measures.
+            let is_first = refused != Some(*span);
             if needs_more && is_first {
                 let message = format!("`{}` is not measured in an optimisation", word_of(*measure));
                 let help = "leave it out here; an experiment with the best gaps can measure it".to_owned();

@@ -46,6 +46,18 @@ const UNITS: [(&str, &[(&str, f64)]); 10] = [
     ("dimensionless", &[("", 1.0)]),
 ];
 
+/// Every unit that a number may be printed in, of measures too.
+pub(super) fn symbols() -> Vec<&'static str> {
+    let mut known = Vec::new();
+    let of_kinds = UNITS.iter().flat_map(|(_, units)| units.iter().map(|(symbol, _)| *symbol));
+    for symbol in of_kinds.chain(Measure::ALL.iter().map(|measure| measure.unit())) {
+        if !known.contains(&symbol) {
+            known.push(symbol);
+        }
+    }
+    known
+}
+
 fn unit(symbol: &str) -> Option<(&'static str, f64)> {
     UNITS.iter().find_map(|(dimension, units)| {
         units.iter().find(|(known, _)| *known == symbol).map(|(_, factor)| (*dimension, *factor))
@@ -93,13 +105,7 @@ impl Printed {
         // What a measure is counted in can be printed, too, as it stands.
         let of_a_measure = || Measure::ALL.iter().any(|measure| measure.unit() == symbol);
         if unit(symbol).is_none() && !of_a_measure() {
-            let mut known: Vec<&str> = Vec::new();
-            let printable = UNITS.iter().flat_map(|(_, units)| units.iter().map(|(symbol, _)| *symbol));
-            for symbol in printable.chain(Measure::ALL.iter().map(|measure| measure.unit())) {
-                if !symbol.is_empty() && !known.contains(&symbol) {
-                    known.push(symbol);
-                }
-            }
+            let known: Vec<&str> = symbols().into_iter().filter(|symbol| !symbol.is_empty()).collect();
             return Err(PrintedError::UnknownUnit(symbol.into(), known.join(", ")));
         }
         Ok(Self { text: text.into(), value, half_unit, unit: symbol.into() })

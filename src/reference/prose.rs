@@ -9,11 +9,9 @@
 //! | `{here: ch6-plate-c1-light/uniform}` | of an entry of another experiment; the reasons of assumptions name all entries so |
 //! | `{here: crossing, mass_on_plates=total}` | with one assumption moved |
 
+use super::printed::symbols;
 use super::verdict::Judged;
 use crate::text::braces::{Part, Unclosed, parts};
-
-/// Letters that units are made of.
-const UNITS: [&str; 13] = ["rad/s", "m/(N s)", "mm/s", "m/s", "1/kg", "N s", "mm", "ms", "Hz", "%", "m", "s", "g"];
 
 /// A text in pieces.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -172,6 +170,7 @@ pub fn numbers(found: &str) -> Vec<String> {
         }
     }
     let is_digit = |letter: char| letter.is_ascii_digit() || matches!(letter, '.' | '\u{202f}');
+    let units: Vec<&str> = symbols().into_iter().filter(|unit| !unit.is_empty()).chain(["%"]).collect();
     let mut numbers = Vec::new();
     let mut rest = text.as_str();
     let mut before = ' ';
@@ -196,8 +195,9 @@ pub fn numbers(found: &str) -> Vec<String> {
             rest = &uncertainty[end..];
         }
         let unit = rest.strip_prefix(' ').and_then(|behind| {
-            let ends = |unit: &&&str| !behind[unit.len()..].starts_with(|letter: char| letter.is_alphanumeric());
-            UNITS.iter().filter(|unit| behind.starts_with(**unit)).find(ends)
+            let goes_on = |letter: char| letter.is_alphanumeric() || letter == '/';
+            let stands = |unit: &&&str| behind.strip_prefix(**unit).is_some_and(|after| !after.starts_with(goes_on));
+            units.iter().filter(stands).max_by_key(|unit| unit.len())
         });
         rest = &rest[unit.map_or(0, |unit| unit.len() + 1)..];
         numbers.push(unit.map_or_else(|| number.to_owned(), |unit| format!("{number} {unit}")));

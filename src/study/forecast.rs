@@ -1,4 +1,5 @@
-//! What is to be said of an experiment before it runs: warnings of what may take long or fail, and of thresholds that get no points.
+//! What is to be said of an experiment before it runs: warnings of what may take long or fail, of averages
+//! that begin too early, and of thresholds that get no points.
 
 use std::time::Duration;
 
@@ -10,6 +11,7 @@ use crate::experiment::{Assumptions, Case, Experiment};
 use crate::measure::{Settings, SolverChoice};
 use crate::scene::{Scene, Surface};
 use crate::text::number::significant;
+use crate::text::words::counted;
 
 /// Fixed steps that take about a second.
 const STEPS_A_SECOND: f64 = 3e7;
@@ -110,11 +112,12 @@ fn of_scene(experiment: &Experiment, scene: &Scene, solvers: &[SolverChoice]) ->
     warnings
 }
 
-/// What is left of the first mode's free vibration where averages begin, e^(−a t), a = φᵀC φ/(2 φᵀM φ) without dampers: the averages carry
-/// it along, and their uncertainty does not know of it.
+/// What is left of the first mode's free vibration where averages begin, e^(−a t) without dampers: a = c/(2 m), above critical damping
+/// that of the slower exponential. The averages carry it along, and their uncertainty does not know of it.
 fn transient(experiment: &Experiment, scene: &Scene) -> Option<String> {
     let Settings { skip, until, .. } = experiment.settings;
-    if skip == 0 || until == Until::Settled {
+    let averages = !experiment.measures.iter().all(|measure| measure.is_modal());
+    if skip == 0 || until == Until::Settled || scene.is_at_rest() || !averages {
         return None;
     }
     let model = scene.structure.model();
@@ -124,17 +127,21 @@ fn transient(experiment: &Experiment, scene: &Scene) -> Option<String> {
         rows.map(|(row, own)| own * row.iter().zip(&shape).map(|(entry, other)| entry * other).sum::<f64>())
             .sum::<f64>()
     };
-    let decay = form(&matrices.damping) / (2.0 * form(&matrices.mass)) * scene.excitation.period();
+    let [mass, damping, stiffness] = [&matrices.mass, &matrices.damping, &matrices.stiffness].map(form);
+    let (half, square) = (damping / (2.0 * mass), stiffness / mass);
+    let exponent = if half * half > square { square / (half + (half * half - square).sqrt()) } else { half };
+    let decay = exponent * scene.excitation.period();
     let left = libm::exp(-decay * f64::from(skip));
     (left > LEFT).then(|| {
         let enough = (-libm::log(LEFT) / decay).ceil();
-        let remedy = if enough < 1e9 {
-            format!("from skip: {enough} cycles on it is below 1 %")
+        let remedy = if enough <= f64::from(u32::MAX) {
+            format!("`skip: {enough} cycles` leaves less than 1 %")
         } else {
-            "nothing damps it".into()
+            "next to nothing damps it".into()
         };
         format!(
-            "after {skip} cycles {} % of the free vibration is left without dampers, and averages carry it; {remedy}",
+            "after {}, {} % of the free vibration is left without dampers, and is part of the averages; {remedy}",
+            counted(skip as usize, "cycle", "cycles"),
             significant(100.0 * left, 2)
         )
     })

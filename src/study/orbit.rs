@@ -322,7 +322,7 @@ impl Following<'_> {
             }
             BranchEnd::CycleStart => "a contact comes to the instant at which the forcing cycle begins".into(),
             BranchEnd::Points => format!("{} points, as many as were asked for", self.continuation.points),
-            BranchEnd::Sensitive => "the motion is too sensitive to be followed: steps along the branch come to nothing".into(),
+            BranchEnd::Sensitive => "the motion is too sensitive to be followed: steps along the branch get nowhere".into(),
             BranchEnd::Orbit(error) => error.to_string(),
             BranchEnd::System(error) => error.to_string(),
         }

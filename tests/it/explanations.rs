@@ -56,6 +56,8 @@ fn numbers_are_read_with_their_units_and_without_conditions() {
         ("true: 13.01 m/(N s) > 10.32 m/(N s)", vec!["13.01 m/(N s)", "10.32 m/(N s)"]),
         ("true: best 3.7 at (0.5, 0.5)", vec!["3.7"]),
         ("up to 3.3e-14 % apart", vec!["3.3e-14 %"]),
+        ("8.0 ± 0.2 mm/N, 60 % below 20 mm/N", vec!["8.0 mm/N", "60 %", "20 mm/N"]),
+        ("3 N s and 4 masses", vec!["3 N s", "4"]),
     ] {
         assert_eq!(numbers(found), read, "{found}");
     }

@@ -238,9 +238,9 @@ impl<E: Effects> March<'_, E> {
     }
 }
 
-/// The speed below which a bounce counts as none, where each one adds so much to u² by rounding. Bounces that take a share of it hold
-/// the sum of 1 / share of them, but no more than a run has. What does not die away within so many is not at an end: sticking may
-/// take no more of the energy than they would, and that of one rounding.
+/// The speed below which a bounce counts as none, where rounding adds `added` to u² at each. Where a bounce takes a share of u², the
+/// roundings of 1/share bounces add up. Below [`LEAST_LOSS`] these are more bounces than a run has: there u² is what 1/[`LEAST_LOSS`] of them
+/// would take of the sum of their roundings, and one rounding at least.
 fn least_bounce(added: f64, restitution: f64) -> f64 {
     let loss = 1.0 - restitution * restitution;
     let sum = if loss > LEAST_LOSS { 1.0 / loss } else { (loss / (LEAST_LOSS * LEAST_LOSS)).max(1.0) };
@@ -296,7 +296,7 @@ mod tests {
                 let proof = response.proof;
                 assert!(proof.momentum_residual < 1e-12 && proof.energy_residual < 1e-12, "{restitution}: {proof:?}");
             }
-            // Chatter that rounding ends differently moves the end of the run by much for little restitution lost.
+            // At restitution 0.9 rounding ends the chatter elsewhere, which moves the end of the run.
             if restitution < 0.9 {
                 let off = (none.final_displacement - small.final_displacement).abs();
                 assert!(off < 1e-7, "restitution {restitution}: {off:e}");
@@ -305,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bounce_that_counts_as_none_gets_slower_without_a_step_as_the_face_takes_less_and_is_one_rounding_where_it_takes_nothing()
+    fn the_speed_below_which_a_bounce_is_none_has_no_step_where_bounces_cease_to_die_away_and_is_one_rounding_where_nothing_is_lost()
      {
         let restitution = |loss: f64| (1.0 - loss).sqrt();
         let speed = |loss: f64| least_bounce(1e-14, restitution(loss));

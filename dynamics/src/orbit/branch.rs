@@ -163,7 +163,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
             steps = if self.points.len() == kept { steps + 1 } else { 0 };
             kept = self.points.len();
             if steps > MOST_STEPS {
-                return self.end(&at, BranchEnd::Sensitive);
+                return self.end_at(&at, BranchEnd::Sensitive);
             }
             let tried = self.limited(&at, step);
             match self.advance(&at, tried)? {
@@ -181,19 +181,21 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
                 Err(_) if let Some(same) = self.cleared(&at) => (at, step) = (same, tried),
                 Err(_) if tried > SHORTEST * self.along.step => step = 0.5 * tried,
                 Err(BranchError::System(error)) => return self.end(&at, BranchEnd::System(error)),
-                Err(BranchError::Orbit(error)) => {
-                    let touches = at.shot.margin() <= TOUCHES;
-                    let parameter = self.path.parameter(at.share);
-                    let period = self.path.system(at.share)?.drive.period;
-                    let end = match error {
-                        _ if touches => BranchEnd::Graze { parameter },
-                        _ if at.shot.meets_its_ends(period) => BranchEnd::CycleStart,
-                        error => BranchEnd::Orbit(error),
-                    };
-                    return self.end(&at, end);
-                }
+                Err(BranchError::Orbit(error)) => return self.end_at(&at, BranchEnd::Orbit(error)),
             }
         }
+    }
+
+    /// Beside a contact that begins, or that comes to the end of a cycle, that is the reason.
+    fn end_at(mut self, at: &At, otherwise: BranchEnd<E>) -> Result<Branch<E>, BranchError<E>> {
+        let parameter = self.path.parameter(at.share);
+        let period = self.path.system(at.share)?.drive.period;
+        let end = match otherwise {
+            _ if at.shot.margin() <= TOUCHES => BranchEnd::Graze { parameter },
+            _ if at.shot.meets_its_ends(period) => BranchEnd::CycleStart,
+            otherwise => otherwise,
+        };
+        self.end(at, end)
     }
 
     /// A step from a point; the error inside says that it was too long.

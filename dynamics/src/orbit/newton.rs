@@ -80,10 +80,8 @@ fn repeats(system: &HybridSystem) -> Result<(), OrbitError> {
 pub(super) fn find(system: &HybridSystem, start: End, cycles: u32) -> Result<Orbit, OrbitError> {
     repeats(system)?;
     let (shot, distance) = closed(system, start, cycles)?;
-    let (shot, distance) = match shot.shortest_period() as u32 {
-        part if part < cycles => closed(system, shot.start, part)?,
-        _ => (shot, distance),
-    };
+    let part = shot.shortest_period() as u32;
+    let (shot, distance) = if part < cycles { closed(system, shot.start, part)? } else { (shot, distance) };
     shot.orbit(system, distance)
 }
 

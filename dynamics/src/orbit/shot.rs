@@ -205,7 +205,8 @@ impl Shot {
         let whole = self.tape.ends.len() as f64 * self.cycle;
         let contacts = self.response.events.iter().filter(|event| event.kind.is_contact());
         contacts.fold([0.0; 3], |[sum, even, odd], event| {
-            let weight = self.share_of_speed(event.approach).powi(2).copysign(event.approach);
+            let speed = self.share_of_speed(event.approach);
+            let weight = (speed * speed).copysign(event.approach);
             let (sin, cos) = libm::sincos(2.0 * TAU * (since_start(event, self.cycle) / whole));
             [sum + weight, even + weight * cos, odd + weight * sin]
         })

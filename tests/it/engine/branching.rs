@@ -185,7 +185,9 @@ fn doubled_motions_end_where_they_meet_the_shorter_one_and_branches_from_both_en
     within("the end below", ends(down), *low, 1e-3);
     let mut others = special(down, Special::PeriodDoubling);
     others.reverse();
-    for (one, other) in special(up, Special::PeriodDoubling).iter().zip(others) {
+    let ups = special(up, Special::PeriodDoubling);
+    assert_eq!((ups.len(), others.len()), (2, 2));
+    for (one, other) in ups.iter().zip(others) {
         close("a doubling of 8 cycles", one.parameter, other.parameter, 1e-9);
     }
 }
