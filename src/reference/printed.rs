@@ -51,7 +51,7 @@ pub(super) fn symbols() -> Vec<&'static str> {
     let mut known = Vec::new();
     let of_kinds = UNITS.iter().flat_map(|(_, units)| units.iter().map(|(symbol, _)| *symbol));
     for symbol in of_kinds.chain(Measure::ALL.iter().map(|measure| measure.unit())) {
-        if !known.contains(&symbol) {
+        if !symbol.is_empty() && !known.contains(&symbol) {
             known.push(symbol);
         }
     }
@@ -105,8 +105,7 @@ impl Printed {
         // What a measure is counted in can be printed, too, as it stands.
         let of_a_measure = || Measure::ALL.iter().any(|measure| measure.unit() == symbol);
         if unit(symbol).is_none() && !of_a_measure() {
-            let known: Vec<&str> = symbols().into_iter().filter(|symbol| !symbol.is_empty()).collect();
-            return Err(PrintedError::UnknownUnit(symbol.into(), known.join(", ")));
+            return Err(PrintedError::UnknownUnit(symbol.into(), symbols().join(", ")));
         }
         Ok(Self { text: text.into(), value, half_unit, unit: symbol.into() })
     }

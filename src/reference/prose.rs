@@ -170,7 +170,7 @@ pub fn numbers(found: &str) -> Vec<String> {
         }
     }
     let is_digit = |letter: char| letter.is_ascii_digit() || matches!(letter, '.' | '\u{202f}');
-    let units: Vec<&str> = symbols().into_iter().filter(|unit| !unit.is_empty()).chain(["%"]).collect();
+    let units: Vec<&str> = symbols().into_iter().chain(["%"]).collect();
     let mut numbers = Vec::new();
     let mut rest = text.as_str();
     let mut before = ' ';

@@ -6,7 +6,7 @@ use std::time::Duration;
 use cpu_time::ThreadTime;
 
 use super::threshold::missed;
-use crate::dynamics::{Allowance, Limit, Matrix, Until};
+use crate::dynamics::{Allowance, Limit, Until};
 use crate::experiment::{Assumptions, Case, Experiment};
 use crate::measure::{Settings, SolverChoice};
 use crate::scene::{Scene, Surface};
@@ -122,12 +122,8 @@ fn transient(experiment: &Experiment, scene: &Scene) -> Option<String> {
     }
     let model = scene.structure.model();
     let (matrices, shape) = (model.matrices(), model.mode(1));
-    let form = |matrix: &Matrix| {
-        let rows = matrix.entries.chunks_exact(matrix.order).zip(&shape);
-        rows.map(|(row, own)| own * row.iter().zip(&shape).map(|(entry, other)| entry * other).sum::<f64>())
-            .sum::<f64>()
-    };
-    let [mass, damping, stiffness] = [&matrices.mass, &matrices.damping, &matrices.stiffness].map(form);
+    let [mass, damping, stiffness] =
+        [matrices.mass, matrices.damping, matrices.stiffness].map(|matrix| matrix.form(&shape, &shape));
     let (half, square) = (damping / (2.0 * mass), stiffness / mass);
     let exponent = if half * half > square { square / (half + (half * half - square).sqrt()) } else { half };
     let decay = exponent * scene.excitation.period();

@@ -358,12 +358,15 @@ fn options_that_have_to_be_chosen_from_are_named() {
     assert!(shotdamp(&desk, &["list", "--help"]).out.contains("grep 'Fig. 18'"));
 }
 
+fn texts<const N: usize>(desk: &Desk, pages: [&str; N]) -> [String; N] {
+    pages.map(|page| fs::read_to_string(desk.layout.path(&format!("reports/{page}"))).unwrap())
+}
+
 #[test]
 fn a_mistake_in_a_reference_leaves_its_verdicts_on_the_pages() {
     let desk = simulated();
     assert_eq!(shotdamp(&desk, &["run", "-q"]).code, 0);
-    let pages = ["README.md", "verdicts.json", "ch3/ch3-gap.md"].map(|page| format!("reports/{page}"));
-    let read = || pages.each_ref().map(|page| fs::read_to_string(desk.layout.path(page)).unwrap());
+    let read = || texts(&desk, ["README.md", "verdicts.json", "ch3/ch3-gap.md"]);
     let judged = read();
     desk.put("reference/ch3/ch3-gap.yaml", &GAP_REFERENCE.replace("says:", "sais:"));
     let run = shotdamp(&desk, &["run"]);
@@ -378,8 +381,7 @@ fn a_mistake_in_a_reference_leaves_its_verdicts_on_the_pages() {
 fn one_experiment_run_in_a_fresh_clone_leaves_the_pages_of_the_whole_study() {
     let desk = simulated();
     assert_eq!(shotdamp(&desk, &["run", "-q"]).code, 0);
-    let pages = ["README.md", "what-stands.md", "verdicts.json"].map(|page| format!("reports/{page}"));
-    let read = || pages.each_ref().map(|page| fs::read_to_string(desk.layout.path(page)).unwrap());
+    let read = || texts(&desk, ["README.md", "what-stands.md", "verdicts.json"]);
     let committed = read();
     // Reports are committed, tables are not.
     fs::remove_dir_all(desk.layout.path("results")).unwrap();

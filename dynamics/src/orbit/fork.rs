@@ -44,14 +44,10 @@ pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
 ) -> Result<Option<Fork>, BranchError<E>> {
     let Some(middle) = crosses(from.determinant, to.determinant) else { return Ok(None) };
     let forwards = |at: &At| at.tangent[at.tangent.len() - 1];
-    if let Some(turn) = crosses(forwards(from), forwards(to)) {
-        if from.shot.swaps_sides(&to.shot) {
-            return Ok(Some(Fork::Joins));
-        }
-        if (turn - middle).abs() <= TURNS {
-            // A fold in the same step as a graze looks the same; there the motion has no mirror image.
-            return Ok(from.shot.has_both_sides().then_some(Fork::Joins));
-        }
+    let turns_there = |turn: f64| (turn - middle).abs() <= TURNS || from.shot.swaps_sides(&to.shot);
+    if crosses(forwards(from), forwards(to)).is_some_and(turns_there) {
+        // A fold in the same step as a graze looks the same; there the motion has no mirror image.
+        return Ok(from.shot.has_both_sides().then_some(Fork::Joins));
     }
     Ok(interpolated(path, from, step * middle, DISTANCE.min(OF_STEP * step))?
         .map(|(place, at)| Fork::Begins(place, at)))
