@@ -7,6 +7,7 @@ use super::line::Pair;
 use super::mapping::{Reads, claim, mapping};
 use super::name::{Column, in_unit, in_unit_of};
 use super::selection::is_number;
+use super::tally::Shown;
 use super::text::{percent, significant};
 use crate::experiment::At;
 
@@ -265,6 +266,14 @@ impl Within {
         match self {
             Self::Relative(fraction) => fraction * a.abs().max(b.abs()),
             Self::Absolute(distance) => *distance,
+        }
+    }
+
+    /// In what a distance of two numbers of this unit is shown.
+    pub(crate) fn shown(&self, a: f64, b: f64, unit: &str) -> Shown {
+        match self {
+            Self::Relative(_) => Shown::PercentOf(a.abs().max(b.abs())),
+            Self::Absolute(_) => Shown::Unit(unit.into()),
         }
     }
 

@@ -13,7 +13,7 @@ use super::line::{common, lines};
 use super::place::{best_place, grows_towards};
 use super::predicate::Predicate;
 use super::shape::{greatest_at_end, levels_off, linear, monotone, onsets, peaks};
-use super::tally::{Decision, Outcome, Tally};
+use super::tally::{Decision, Outcome, Tally, strict};
 use super::text::{apart as told_apart, listed, percent, significant, symbol, with_unit};
 use super::view::{Absence, Cell, Line, View};
 use super::words;
@@ -49,7 +49,9 @@ pub(crate) fn decide(predicate: &Predicate, view: &View<'_>) -> Result<Decision,
     };
     match decided {
         // What the claim speaks of does not happen: that is an answer.
-        Err(Absence::Nowhere(reason)) => Ok(Decision { outcome: Outcome::Fails, found: reason, reach: None }),
+        Err(Absence::Nowhere(reason)) => {
+            Ok(Decision { outcome: Outcome::Fails, found: reason, reach: None, margin: None })
+        }
         other => other,
     }
 }
@@ -74,7 +76,7 @@ fn trend(claim: &Trend, view: &View<'_>) -> Result<Decision, Absence> {
             }
         })
         .collect();
-    let mut tally = Tally::new();
+    let mut tally = Tally::new(unit_of(&numbers));
     for pair in numbers.windows(2) {
         let (margin, u) =
             (claim.direction.sign() * (pair[1].value - pair[0].value), libm::hypot(pair[0].run, pair[1].run));
@@ -118,7 +120,7 @@ fn shortened(list: &[String], worst: usize) -> String {
 
 fn greatest_first(list: &[Extraction], view: &View<'_>) -> Result<Decision, Absence> {
     let values = list.iter().map(|one| one.take(view)).collect::<Result<Vec<_>, _>>()?;
-    let mut tally = Tally::new();
+    let mut tally = Tally::new(unit_of(&values));
     for pair in values.windows(2) {
         tally.require_strictly(pair[0].value - pair[1].value, libm::hypot(pair[0].run, pair[1].run), String::new);
     }
@@ -153,13 +155,20 @@ fn greatest_first(list: &[Extraction], view: &View<'_>) -> Result<Decision, Abse
     Ok(Decision { found, ..decision })
 }
 
+/// The unit that numbers of one claim share.
+fn unit_of(numbers: &[Extracted]) -> &str {
+    numbers.first().map_or("", |one| one.unit.as_str())
+}
+
 fn equal(claim: &Equal, view: &View<'_>) -> Result<Decision, Absence> {
     let values = claim.values.iter().map(|one| one.take(view)).collect::<Result<Vec<_>, _>>()?;
-    let mut tally = Tally::new();
+    let mut tally = Tally::new("");
     for (i, a) in values.iter().enumerate() {
         for b in &values[i + 1..] {
             let apart = (a.value - b.value).abs();
-            tally.require(
+            tally.require_in(
+                1.0,
+                claim.within.shown(a.value, b.value, &a.unit),
                 claim.within.allows(a.value, b.value) - apart,
                 joint([a.value, a.run], [b.value, b.run]),
                 String::new,
@@ -225,11 +234,12 @@ fn joint(a: [f64; 2], b: [f64; 2]) -> f64 {
 
 fn apart(claim: &Apart, view: &View<'_>) -> Result<Decision, Absence> {
     let values = claim.values.iter().map(|one| one.take(view)).collect::<Result<Vec<_>, _>>()?;
-    let mut tally = Tally::new();
+    let mut tally = Tally::new("");
     for (i, a) in values.iter().enumerate() {
         for b in &values[i + 1..] {
-            let apart = (a.value - b.value).abs();
-            tally.require_strictly(apart - claim.by.allows(a.value, b.value), libm::hypot(a.run, b.run), String::new);
+            let margin = (a.value - b.value).abs() - claim.by.allows(a.value, b.value);
+            let shown = claim.by.shown(a.value, b.value, &a.unit);
+            tally.require_in(1.0, shown, strict(margin), libm::hypot(a.run, b.run), String::new);
         }
     }
     let what = words::common(&claim.values).unwrap_or_default();
@@ -240,7 +250,7 @@ fn apart(claim: &Apart, view: &View<'_>) -> Result<Decision, Absence> {
 
 fn between(claim: &Between, view: &View<'_>) -> Result<Decision, Absence> {
     let value = claim.value.take(view)?;
-    let mut tally = Tally::new();
+    let mut tally = Tally::new(&value.unit);
     if let Some(from) = claim.from {
         tally.require(value.value - from, value.run, String::new);
     }
@@ -264,14 +274,14 @@ fn between(claim: &Between, view: &View<'_>) -> Result<Decision, Absence> {
     };
     let what = words::common(std::slice::from_ref(&claim.value)).unwrap_or_default();
     let found = format!("{what}{shown} (required: {required})");
-    Ok(Decision { found, ..tally.decision()? })
+    Ok(Decision { found, margin: None, ..tally.decision()? })
 }
 
 fn level(claim: &Level, view: &View<'_>, side: f64) -> Result<Decision, Absence> {
     let rows = view.rows(claim.source(), None)?;
     let cells = view.cells(&rows, &claim.of)?;
     let unit = view.unit(&rows, &claim.of)?;
-    let mut tally = Tally::new();
+    let mut tally = Tally::new(unit);
     for cell in &cells {
         tally.require(side * (cell.value - claim.level) + claim.slack, cell.run, || {
             let (extreme, bound) = if side > 0.0 { ("lowest", "at least") } else { ("highest", "at most") };
@@ -293,26 +303,30 @@ fn extremes(cells: &[Cell]) -> Option<(Cell, Cell)> {
 fn columns_agree(claim: &ColumnsAgree, view: &View<'_>) -> Result<Decision, Absence> {
     let rows = view.rows(claim.source(), None)?;
     let columns = claim.columns.iter().map(|of| view.cells(&rows, of)).collect::<Result<Vec<_>, _>>()?;
-    let mut tally = Tally::new();
+    let unit = view.unit(&rows, &claim.columns[0])?;
+    let mut tally = Tally::new("");
     for row in 0..rows.count() {
         let cells: Vec<Cell> = columns.iter().map(|column| column[row]).collect();
-        agree(&mut tally, &cells, &claim.within, String::new);
+        agree(&mut tally, &cells, &claim.within, unit, String::new);
     }
     tally.decision()
 }
 
 fn lines_agree(claim: &LinesAgree, view: &View<'_>) -> Result<Decision, Absence> {
     let all = lines(view, claim.source(), &claim.of, &claim.over, &claim.by)?;
-    let mut tally = Tally::new();
+    let unit = all.first().map_or("", |(_, line)| line.unit.as_str());
+    let mut tally = Tally::new("");
     for (x, cells) in common(&all)? {
-        agree(&mut tally, &cells, &claim.within, || format!(" at {} = {}", symbol(&claim.over), significant(x, 4)));
+        agree(&mut tally, &cells, &claim.within, unit, || {
+            format!(" at {} = {}", symbol(&claim.over), significant(x, 4))
+        });
     }
     tally.decision()
 }
 
 fn line_above(claim: &LineAbove, view: &View<'_>) -> Result<Decision, Absence> {
     let mut lead = claim.pair().lead(view, claim.source())?;
-    let mut tally = Tally::new();
+    let mut tally = Tally::new(&lead.unit);
     if claim.points == Points::Most {
         // More than half are ahead if the one in the middle, or the next lower, is.
         let points = lead.y.len();
@@ -332,12 +346,13 @@ fn line_above(claim: &LineAbove, view: &View<'_>) -> Result<Decision, Absence> {
     tally.decision()
 }
 
-fn agree(tally: &mut Tally, cells: &[Cell], within: &Within, place: impl FnOnce() -> String) {
+fn agree(tally: &mut Tally, cells: &[Cell], within: &Within, unit: &str, place: impl FnOnce() -> String) {
     if let Some((low, high)) = extremes(cells) {
         let apart = high.value - low.value;
         let allowed = within.allows(low.value, high.value);
         let scale = if allowed > 0.0 { allowed } else { 1.0 };
-        tally.require_in(scale, allowed - apart, joint([low.value, low.run], [high.value, high.run]), || {
+        let shown = within.shown(low.value, high.value, unit);
+        tally.require_in(scale, shown, allowed - apart, joint([low.value, low.run], [high.value, high.run]), || {
             let shown = match within {
                 Within::Relative(_) => percent(apart / low.value.abs().max(high.value.abs())),
                 Within::Absolute(_) => significant(apart, 3),
@@ -356,7 +371,7 @@ fn paths_cross(claim: &PathsCross, view: &View<'_>) -> Result<Decision, Absence>
     }
     let apart = || one.iter().zip(other).map(|(a, b)| a - b);
     let (above, below) = (apart().fold(f64::NEG_INFINITY, f64::max), -apart().fold(f64::INFINITY, f64::min));
-    let mut tally = Tally::new();
+    let mut tally = Tally::new("");
     tally.require_strictly(above.min(below), 0.0, || {
         format!(
             "{} goes above {} by up to {} and below it by up to {}",
@@ -382,7 +397,7 @@ fn greatest_point(claim: &GreatestPoint, view: &View<'_>) -> Result<Decision, Ab
         return Err(Absence::NoRow(format!("the list `{}` has one point alone", claim.over)));
     };
     let unit = view.unit(&rows, &claim.of)?;
-    let mut tally = Tally::new();
+    let mut tally = Tally::new("");
     tally.require_strictly(value - most, 0.0, || {
         format!(
             "{} at {} = {}; elsewhere at most {}, at {}",
@@ -415,7 +430,7 @@ fn path_monotone(claim: &PathMonotone, view: &View<'_>) -> Result<Decision, Abse
         y: samples.iter().map(cell).collect(),
     };
     let (range, back) = (line.range(), line.largest_fall().value);
-    let mut tally = Tally::new();
+    let mut tally = Tally::new("");
     let rise = line.y[line.y.len() - 1].value - line.y[0].value;
     tally.require_strictly(rise, 0.0, || {
         format!("changes by {} from end to end", with_unit(claim.direction.sign() * rise, 3, &line.unit))

@@ -71,7 +71,7 @@ pub(crate) fn judge_entry(
                     kept: other.outcome == baseline.outcome,
                 };
                 let moved: Vec<Moved> = others.iter().map(description).collect();
-                let mut found = format!("{}: {}", in_words(baseline.outcome), baseline.found);
+                let mut found = format!("{}: {}", in_words(baseline.outcome), baseline.words());
                 if blocked {
                     found += &format!(" (not stated: {})", entry.blocked_by.join(", "));
                 }

@@ -121,7 +121,7 @@ impl ModeShape {
 
     pub(crate) fn decide(&self, view: &View<'_>) -> Result<Decision, Absence> {
         let compared = self.compared(view)?;
-        let mut tally = Tally::new();
+        let mut tally = Tally::new("");
         let margin = match self.mac {
             Mac::AtLeast(limit) => compared.mac - limit,
             Mac::AtMost(limit) => limit - compared.mac,

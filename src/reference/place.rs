@@ -9,7 +9,7 @@ use serde_json::json;
 use super::mapping::{Reads, Seen, claim};
 use super::name::Column;
 use super::selection::{Allowed, is_number, same};
-use super::tally::{Decision, Outcome, Tally};
+use super::tally::{Decision, Outcome, Shown, Tally, strict};
 use super::text::{percent, significant, with_unit};
 use super::view::{Absence, Cell, Source, View};
 use super::words;
@@ -112,7 +112,7 @@ impl fmt::Display for Place {
 }
 
 pub(crate) fn best_place(claim: &BestPlace, view: &View<'_>) -> Result<Decision, Absence> {
-    let mut tally = Tally::new();
+    let mut tally = Tally::new("");
     let mut found = Vec::new();
     for (level, map) in maps(view, claim.source(), claim.each.as_deref(), &claim.of, &claim.at)? {
         let target = map.index_of_target(&claim.at)?;
@@ -142,7 +142,7 @@ pub(crate) fn best_place(claim: &BestPlace, view: &View<'_>) -> Result<Decision,
         let rank = 1 + rivals.iter().filter(|spot| short(spot) > 0.0).count();
         let rival = rivals[claim.among - 1];
         let u = if short(rival) == 0.0 { 0.0 } else { libm::hypot(rival.cell.run, place.cell.run) };
-        tally.require(allowed - short(rival), u, || {
+        tally.require_in(1.0, Shown::Unit(map.unit.clone()), allowed - short(rival), u, || {
             format!(
                 "{level}{} at {}, number {rank} of {}; best {} at {}",
                 with_unit(place.cell.value, 4, &map.unit),
@@ -186,7 +186,7 @@ fn best_in_words(found: &[Best]) -> String {
 }
 
 pub(crate) fn grows_towards(claim: &GrowsTowards, view: &View<'_>) -> Result<Decision, Absence> {
-    let mut tally = Tally::new();
+    let mut tally = Tally::new("");
     let (mut steps, mut up) = (0_usize, 0_usize);
     let mut largest = (0.0_f64, String::new());
     for (level, map) in maps(view, claim.source(), claim.each.as_deref(), &claim.of, &claim.to)? {
@@ -200,7 +200,7 @@ pub(crate) fn grows_towards(claim: &GrowsTowards, view: &View<'_>) -> Result<Dec
                 largest = (-rise / range, way());
             }
             let u = if same(from.cell.value, to.cell.value) { 0.0 } else { libm::hypot(from.cell.run, to.cell.run) };
-            tally.require(claim.slack * range + rise, u, || {
+            tally.require_in(1.0, Shown::PercentOf(range), claim.slack * range + rise, u, || {
                 format!(
                     "falls back by {} of the range{} ({} allowed)",
                     percent(-rise / range),
@@ -214,7 +214,8 @@ pub(crate) fn grows_towards(claim: &GrowsTowards, view: &View<'_>) -> Result<Dec
         let farthest = map.spots.iter().max_by(|a, b| by_distance(a).total_cmp(&by_distance(b)));
         if let (Some(nearest), Some(farthest)) = (nearest, farthest) {
             let rise = nearest.cell.value - farthest.cell.value;
-            tally.require_strictly(rise, libm::hypot(nearest.cell.run, farthest.cell.run), || {
+            let u = libm::hypot(nearest.cell.run, farthest.cell.run);
+            tally.require_in(1.0, Shown::Unit(map.unit.clone()), strict(rise), u, || {
                 format!(
                     "{level}{} at {}, {} at {}",
                     with_unit(nearest.cell.value, 4, &map.unit),

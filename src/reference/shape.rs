@@ -25,7 +25,7 @@ pub(crate) fn monotone(claim: &Monotone, view: &View<'_>) -> Result<Decision, Ab
         )));
     }
     let line = if claim.direction == Direction::Increasing { line } else { line.inverted() };
-    let mut tally = Tally::new();
+    let mut tally = Tally::of_range(range);
     let (first, last) = (line.y[0], line.y[line.y.len() - 1]);
     tally.require_strictly(last.value - first.value, libm::hypot(last.run, first.run), || {
         format!("changes by {} from end to end", signed(claim.direction.sign() * (last.value - first.value), 3))
@@ -84,7 +84,7 @@ pub(crate) fn linear(claim: &Linear, view: &View<'_>) -> Result<Decision, Absenc
         xy += (x - mean_x) * (cell.value - mean_y);
     }
     let slope = xy / xx;
-    let mut tally = Tally::new();
+    let mut tally = Tally::of_range(line.range());
     for (x, cell) in line.x.iter().zip(&line.y) {
         let off = (cell.value - mean_y - slope * (x - mean_x)).abs();
         tally.require(claim.within * line.range() - off, cell.run, || {
@@ -101,7 +101,7 @@ pub(crate) fn linear(claim: &Linear, view: &View<'_>) -> Result<Decision, Absenc
 pub(crate) fn levels_off(claim: &LevelsOff, view: &View<'_>) -> Result<Decision, Absence> {
     let line = view.line(claim.source(), &claim.of, &claim.over, None)?;
     let last = line.y[line.y.len() - 1];
-    let mut tally = Tally::new();
+    let mut tally = Tally::of_range(line.range());
     for (_, cell) in line.x.iter().zip(&line.y).rev().skip(1).filter(|(x, _)| **x >= claim.from) {
         let off = (cell.value - last.value).abs();
         tally.require(claim.within * line.range() - off, libm::hypot(cell.run, last.run), || {
@@ -121,7 +121,7 @@ pub(crate) fn greatest_at_end(claim: &GreatestAtEnd, view: &View<'_>) -> Result<
     let line = view.line(claim.source(), &claim.of, &claim.over, None)?;
     let end = if claim.end == Side::Low { 0 } else { line.x.len() - 1 };
     let at_end = line.y[end];
-    let mut tally = Tally::new();
+    let mut tally = Tally::new(&line.unit);
     for (i, cell) in line.y.iter().enumerate().filter(|(i, _)| *i != end) {
         tally.require_strictly(at_end.value - cell.value, libm::hypot(at_end.run, cell.run), || {
             format!(
@@ -167,7 +167,7 @@ pub(crate) fn peaks(claim: &Peaks, view: &View<'_>) -> Result<Decision, Absence>
         1 => format!("1 peak: {} = {}", symbol(&claim.over), places[0]),
         more => format!("{more} peaks: {} = {}", symbol(&claim.over), places.join(", ")),
     };
-    Ok(Decision { outcome: at_least.max(at_most), found, reach: None })
+    Ok(Decision { outcome: at_least.max(at_most), found, reach: None, margin: None })
 }
 
 pub(crate) fn onsets(claim: &Onsets, view: &View<'_>) -> Result<Decision, Absence> {
@@ -179,7 +179,7 @@ pub(crate) fn onsets(claim: &Onsets, view: &View<'_>) -> Result<Decision, Absenc
             Ok(line.onset(onset.above)?.1.x)
         })
         .collect::<Result<Vec<f64>, Absence>>()?;
-    let mut tally = Tally::new();
+    let mut tally = Tally::new("");
     for pair in found.windows(2) {
         // On one grid, a later first point is a later onset, however wide the grid's steps are.
         tally.require_strictly(pair[1] - pair[0], 0.0, String::new);

@@ -24,6 +24,19 @@ pub(crate) fn percent(fraction: f64) -> String {
     format!("{} %", significant(100.0 * fraction, 2))
 }
 
+/// A fraction and its error as per cent: `−1.2 ± 3.4 %`.
+pub(crate) fn percents(fraction: f64, error: f64) -> String {
+    let (value, error) = number::with_uncertainty(100.0 * fraction, 100.0 * error);
+    format!("{value} ± {error} %")
+}
+
+/// A number and its error with their unit: `0.57 ± 0.33 mm/s`.
+pub(crate) fn with_error(x: f64, error: f64, unit: &str) -> String {
+    let (factor, unit) = scale(x.abs().max(error), unit);
+    let (value, error) = number::with_uncertainty(factor * x, factor * error);
+    if unit.is_empty() { format!("{value} ± {error}") } else { format!("{value} ± {error} {unit}") }
+}
+
 /// A number with its unit; lengths, times and velocities in thousandths where that is shorter.
 pub(crate) fn with_unit(x: f64, digits: usize, unit: &str) -> String {
     in_scale_of(x, x, digits, unit)
@@ -31,14 +44,19 @@ pub(crate) fn with_unit(x: f64, digits: usize, unit: &str) -> String {
 
 /// A number with its unit, in thousandths where the largest of those that it stands beside is shorter so.
 fn in_scale_of(largest: f64, x: f64, digits: usize, unit: &str) -> String {
-    let (factor, unit) = match unit {
+    let (factor, unit) = scale(largest, unit);
+    let number = significant(x * factor, digits);
+    if unit.is_empty() { number } else { format!("{number} {unit}") }
+}
+
+/// The unit in which numbers up to `largest` are shown, and its factor.
+fn scale(largest: f64, unit: &str) -> (f64, &str) {
+    match unit {
         "m/s" if largest.abs() < 2.0 => (1e3, "mm/s"),
         "m" if largest != 0.0 && largest.abs() < 1.0 => (1e3, "mm"),
         "s" if largest != 0.0 && largest.abs() < 1.0 => (1e3, "ms"),
         _ => (1.0, unit),
-    };
-    let number = significant(x * factor, digits);
-    if unit.is_empty() { number } else { format!("{number} {unit}") }
+    }
 }
 
 /// Numbers with their units, each quantity in one unit, in so many digits that two that differ look different.

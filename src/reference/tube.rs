@@ -72,7 +72,7 @@ struct Departure {
 impl Curve {
     pub(crate) fn decide(&self, view: &View<'_>) -> Result<Decision, Absence> {
         let (line, departures) = self.departures(view)?;
-        let mut tally = Tally::new();
+        let mut tally = Tally::new("widths");
         for departure in &departures {
             tally.require(1.0 - departure.widths, departure.u, || self.words(departure, &line));
         }

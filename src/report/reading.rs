@@ -26,7 +26,9 @@ u_val = √(u_num² + u_input² + u_D²): u_num covers discretisation, the grid 
 the inputs that the study does not state, u_D half a unit of the last printed digit. The two agree if |E| ≤ 2 u_val. \
 **± is 2 u_val** wherever a number is compared with the study. A tolerance set by hand replaces 2 u_val and is shown beside the \
 verdict. Agreement is *reproduced* only if it could have failed: where ± alone is wider than a tenth of D (and than the printed \
-digits allow), the number is blocked or undecidable, unless it was fitted and is off by no more than that. **Claims** are decided over the whole table; “x % apart” is a difference over the larger of the numbers.
+digits allow), the number is blocked or undecidable, unless it was fitted and is off by no more than that. **Claims** are decided over the whole table; “x % apart” is a difference over the larger of the numbers. The *margin* is how far the numbers \
+are on the right side of what the claim requires. Where it is small it is shown ± 2 u; u is the error of the grid and of the mean over \
+the ensemble, which is smaller than the spread of single runs. A claim is *too close to call* where ± is larger than the margin.
 
 **Fitted** entries were used to choose an unstated input, so their agreement proves nothing. **Held out** entries were kept aside \
 by a calibration to test it. Only entries that are held out or in no fit are evidence, and those fitted ones that still agree when \

@@ -169,6 +169,36 @@ fn a_value_is_reproduced_within_twice_the_validation_uncertainty_and_differs_bey
     assert!((comparison.digits() - 2.177).abs() < 1e-3);
 }
 
+/// 3.378 ± 0.1 and 3.365 ± 0.1: the difference, 0.013, is known to ± √2 · 0.1.
+#[test]
+fn a_claim_that_chance_may_decide_shows_the_uncertainty_of_its_difference() {
+    let found = |values: [f64; 2], num: f64| {
+        let mut table = variants(&[("baseline", values[0]), ("baseline", values[1])], num, 0.0, 1);
+        table.columns.push(float("gap_ratio", &[50.0, 90.0]));
+        let cell = |gap: u32| format!("{{cell: {{of: velocity_ratio, where: {{gap_ratio: {gap}}}}}}}");
+        let judged = judged(&format!("claim: {{greatest_first: [{}, {}]}}", cell(50), cell(90)), &table);
+        (judged.verdict, judged.found)
+    };
+    let (verdict, text) = found([3.378, 3.365], 0.05);
+    assert!(verdict == Verdict::Undecidable && text.ends_with("3.378 ≈ 3.365; margin 0.013 ± 0.14"), "{text}");
+    let (verdict, text) = found([3.378, 3.165], 0.05);
+    assert!(verdict == Verdict::Reproduced && text.ends_with("3.378 > 3.165; margin 0.21 ± 0.14"), "{text}");
+    // Beyond doubt, the numbers say enough.
+    let (verdict, text) = found([3.378, 2.027], 0.05);
+    assert!(verdict == Verdict::Reproduced && text.ends_with("3.378 > 2.027"), "{text}");
+    // A limit in per cent has a margin in per cent.
+    let mut table = variants(&[("baseline", 3.378), ("baseline", 3.258)], 0.05, 0.0, 1);
+    table.columns.push(float("gap_ratio", &[50.0, 90.0]));
+    let cell = |gap: u32| format!("{{cell: {{of: velocity_ratio, where: {{gap_ratio: {gap}}}}}}}");
+    let equal = format!(
+        "claim: {{equal: {{values: [{}, {}], within: {{relative: 0.05}}}}}}\nthreshold_reason: for the test",
+        cell(50),
+        cell(90)
+    );
+    let text = judged(&equal, &table).found;
+    assert!(text.ends_with("3.6 % apart (5 % allowed); margin 1.4 ± 4.2 %"), "{text}");
+}
+
 #[test]
 fn unstated_inputs_widen_the_tolerance_by_half_their_range_each_in_quadrature() {
     let table = variants(
