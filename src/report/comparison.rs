@@ -61,7 +61,7 @@ fn conclusion(judged: &[Judged]) -> String {
     format!("{}: of {statements}, {agreeing}{others}{fitted}.", outcome(&tally))
 }
 
-/// What became of these entries together, in a word or two. What was fitted is no evidence.
+/// What became of these entries together, in a few words. What was fitted is no evidence.
 pub(super) fn outcome(tally: &Tally) -> &'static str {
     let evidence = tally.evidence();
     match tally.count(Verdict::Reproduced) {
@@ -70,6 +70,7 @@ pub(super) fn outcome(tally: &Tally) -> &'static str {
         agree if agree == evidence => "Stands",
         0 if !tally.has(Verdict::Differs) => "Cannot be decided",
         0 => "Does not stand",
+        agree if agree < tally.count(Verdict::Differs) => "Mostly does not stand",
         _ => "Stands in part",
     }
 }

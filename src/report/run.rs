@@ -223,6 +223,9 @@ fn cases(experiment: &Experiment) -> String {
         None => over,
     };
     match &experiment.maximise {
+        None if !experiment.refined.is_empty() => {
+            format!("{cases}{over} to begin with; each case that is added where a line bends has a row, too")
+        }
         None => format!("{cases}{over}"),
         Some(maximise) => {
             let ends = match (maximise.grid.first(), maximise.grid.last()) {

@@ -32,7 +32,7 @@ enum Robustness {
     Fails,
     /// Agrees with one value of an input and not with another.
     Depends,
-    /// Undecidable or blocked, and no move changes that.
+    /// Undecidable or blocked, with the inputs in force or under some move, and no move turns it.
     Open,
     /// Agrees, and an assumption was chosen by it.
     Chosen,
@@ -75,10 +75,8 @@ pub fn what_stands(
     text += &section("Stands: agrees under every move that was made", group(Robustness::Stands));
     text += &section("Does not stand: differs under every move that was made", group(Robustness::Fails));
     text += &in_question(&questions);
-    text += &section(
-        "Undecided, as they stand or under some move: chaotic, or blocked by what no single input settles",
-        group(Robustness::Open),
-    );
+    text +=
+        &section("Open: undecidable or blocked, with the inputs in force or under some move", group(Robustness::Open));
     text += &section("Agrees, but was used to choose an input", group(Robustness::Chosen));
     text += &section("Not tested: no unstated input of its experiment was moved", group(Robustness::NotMoved));
     text + &section("No result", group(Robustness::Missing))
@@ -178,7 +176,7 @@ fn in_short<'a>(group: &dyn Fn(Robustness) -> &'a [Line<'a>], questions: &[Quest
         (Robustness::Stands, "agree under every move"),
         (Robustness::Fails, "differ under every move"),
         (Robustness::Depends, "depend on one of them"),
-        (Robustness::Open, "are undecided, as they stand or under some move"),
+        (Robustness::Open, "are open: undecidable or blocked, with the inputs in force or under some move"),
         (Robustness::Chosen, "agree, but were used to choose an input, which proves nothing"),
         (Robustness::NotMoved, "were not tested, as no unstated input of their experiment was moved"),
         (Robustness::Missing, "have no result"),

@@ -197,11 +197,14 @@ fn a_conclusion_stands_as_far_as_its_entries_do() {
     let agree = |one: &&Judged| matches!(one.verdict, Verdict::Reproduced);
     let good: Vec<String> = judged.iter().filter(agree).map(|one| one.id.clone()).collect();
     let bad = judged.iter().find(|one| one.verdict == Verdict::Differs).unwrap();
+    let bad_ones: Vec<String> =
+        judged.iter().filter(|one| one.verdict == Verdict::Differs).map(|one| one.id.clone()).collect();
     let finding = |says: &str, entries: Vec<String>| Finding { says: says.into(), entries };
     let about = AboutStudy {
         findings: vec![
             finding("Good.", vec![good[0].clone()]),
             finding("Mixed.", vec![good[0].clone(), bad.id.clone()]),
+            finding("Worse.", [&good[..1], &bad_ones].concat()),
             finding("Bad.", vec![bad.id.clone()]),
             finding("Misspelt.", vec!["ch3-limit-stop/partng".into()]),
         ],
@@ -211,6 +214,8 @@ fn a_conclusion_stands_as_far_as_its_entries_do() {
     let row = |says: &str| index.lines().find(|line| line.starts_with(&format!("| {says}"))).unwrap_or_default();
     assert!(row("Good.").contains("**stands** [●](ch3/ch3-limit-stop.md#entry-"), "{index}");
     assert!(row("Mixed.").contains("**stands in part**, 1 of 2 [●]"), "{index}");
+    // More differ than agree.
+    assert!(bad_ones.len() > 1 && row("Worse.").contains("**mostly does not stand**, 1 of "), "{index}");
     assert!(row("Bad.").contains("**does not stand** [✕]"), "{index}");
     let why = bad.explanation.split(". ").next().unwrap();
     assert!(row("Bad.").contains(why.trim_end_matches('.')), "the reason stands beside it: {index}");

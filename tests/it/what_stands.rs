@@ -8,6 +8,22 @@ use serde_json::Value;
 use crate::guide::document;
 
 #[test]
+fn the_readme_counts_the_verdicts_of_the_reports() {
+    let verdicts: Value = serde_json::from_str(&document("reports/verdicts.json")).unwrap();
+    let entries = verdicts["entries"].as_array().unwrap();
+    let [reproduced, differ, fitted, undecidable, blocked] =
+        ["reproduced", "differs", "fitted", "undecidable", "blocked"]
+            .map(|verdict| entries.iter().filter(|entry| entry["verdict"] == verdict).count());
+    let sentence = format!(
+        "Of {} published numbers and claims {reproduced} are reproduced and {differ} differ; {fitted} were fitted, {undecidable} are undecidable \
+         and {blocked} blocked.",
+        entries.len()
+    );
+    let readme = document("README.md").split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(readme.contains(&sentence), "README.md should say: {sentence}");
+}
+
+#[test]
 fn every_entry_of_the_study_has_one_place_and_its_verdict_fits_it() {
     let page = document("reports/what-stands.md");
     let verdicts: Value = serde_json::from_str(&document("reports/verdicts.json")).unwrap();
