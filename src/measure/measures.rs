@@ -336,6 +336,19 @@ impl Measure {
         self.facts().runs == Runs::Both
     }
 
+    /// A motion without dampers over the one with them: below 1 the dampers do harm.
+    #[must_use]
+    pub fn is_ratio_to_undamped(self) -> bool {
+        matches!(
+            self,
+            Self::VelocityRatio
+                | Self::DisplacementRatio
+                | Self::VelocityAmplitudeRatio
+                | Self::DisplacementAmplitudeRatio
+                | Self::SettledVelocityRatio
+        )
+    }
+
     /// Known without a run, as long as a shape that is kept is a mode's.
     #[must_use]
     pub fn is_modal(self) -> bool {

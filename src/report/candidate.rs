@@ -18,6 +18,10 @@ pub(super) fn section(optimise: &Optimise, table: &Table) -> String {
     let mut text = String::from("## What the searches found\n\n");
     text += &rows.best(optimise);
     text += &rows.table(optimise);
+    if optimise.measure.is_ratio_to_undamped() && rows.any_below_one() {
+        let measure = column_words(&words::of_key(&optimise.measure));
+        text += &format!("A {measure} below 1 means harm: the structure moves more with its dampers than without.\n\n");
+    }
     text += &format!(
         "A search sees one run for each setting; its result is evaluated again as the mean over an ensemble, ± one standard error. \
          Improvements are against {}; one within its standard error is noise.\n\n",
@@ -92,7 +96,7 @@ impl Rows {
             counted(self.list.len(), "candidate", "candidates"),
             best.name,
             self.fitness(best),
-            self.verdict(best)
+            if self.is_first(best) { "no other is better".into() } else { self.verdict(best) }
         );
         let tied: Vec<&str> = self
             .list
@@ -108,6 +112,15 @@ impl Rows {
 
     fn best_row(&self, optimise: &Optimise) -> Option<&Row> {
         self.list.iter().min_by(|a, b| a.order(optimise.goal).total_cmp(&b.order(optimise.goal)))
+    }
+
+    /// Whether it is the one that the others are compared with.
+    fn is_first(&self, row: &Row) -> bool {
+        self.list.first().is_some_and(|first| std::ptr::eq(first, row))
+    }
+
+    fn any_below_one(&self) -> bool {
+        self.list.iter().any(|row| row.fitness[0] < 1.0)
     }
 
     fn table(&self, optimise: &Optimise) -> String {
@@ -162,6 +175,9 @@ impl Rows {
     fn verdict(&self, row: &Row) -> String {
         let Some(first) = self.list.first() else { return String::new() };
         let [improvement, error] = row.improvement;
+        if self.is_first(row) {
+            return "reference".into();
+        }
         if improvement == 0.0 && error == 0.0 {
             return format!("the same gaps as {}", first.name);
         }
