@@ -9,7 +9,7 @@ use super::exit::Exit;
 use super::output::{print, print_error, print_unread, print_warnings};
 use super::select::{Chosen, Found, choose, matched};
 use super::simulate::{How, Ran, held, print_failures, simulate};
-use crate::report::{Judgement, Published, doubts, judge_all, publish, summary_of};
+use crate::report::{INDEX, Judgement, Published, doubts, judge_all, publish, report_of, summary_of};
 use crate::study::{Item, Layout, Lock, RunTimes, STUDY, Snapshot, State, Study, remove_journals, save};
 use crate::text::words::counted;
 
@@ -21,7 +21,7 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
         if let Some(ids) = matched(&found, &args.choice) {
             found.snapshot.settle(layout);
             print_warnings(found.snapshot.warnings(&found.texts).as_ref());
-            return nothing_to_do(&found.snapshot, &ids);
+            return nothing_to_do(layout, &found.snapshot, &ids);
         }
     }
     if args.dry_run {
@@ -54,11 +54,13 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     conclude(&study, &args.choice, done)
 }
 
-fn nothing_to_do(snapshot: &Snapshot, ids: &BTreeSet<&str>) -> Result<Exit, CliError> {
+fn nothing_to_do(layout: &Layout, snapshot: &Snapshot, ids: &BTreeSet<&str>) -> Result<Exit, CliError> {
     let chosen = snapshot.experiments.iter().filter(|(id, _)| ids.contains(id.as_str()));
     let verdicts: BTreeMap<_, _> = chosen.map(|(id, known)| (id.clone(), known.judged.clone())).collect();
     let judgement = Judgement { verdicts, ..Judgement::default() };
-    print(&format!("Nothing to do.\n{}", verdicts_of(&judgement, ids)))?;
+    let known = |id: &str| snapshot.experiments.get(id).map(|known| known.folder.as_str());
+    let page = page_to_open(layout, ids, known);
+    print(&format!("Nothing to do.\n{}{page}", verdicts_of(&judgement, ids)))?;
     Ok(Exit::of_verdicts(judgement.verdicts.values().flatten()))
 }
 
@@ -67,6 +69,18 @@ fn verdicts_of(judgement: &Judgement, ids: &BTreeSet<&str>) -> String {
     let judged = ids.iter().any(|id| judgement.verdicts.get(*id).is_some_and(|judged| !judged.is_empty()));
     let summary = if judged { summary_of(judgement, ids) } else { String::new() };
     summary + &doubts(judgement, ids)
+}
+
+/// The page to open next: of a single experiment its own, else the index; nothing where it is not there.
+fn page_to_open<'a>(layout: &Layout, ids: &BTreeSet<&'a str>, folder: impl Fn(&'a str) -> Option<&'a str>) -> String {
+    let name = match ids.iter().collect::<Vec<_>>().as_slice() {
+        [] => None,
+        [id] => folder(id).map(|folder| report_of(folder, id)),
+        _ => Some(INDEX.into()),
+    };
+    let Some(path) = name.map(|name| layout.path(&name)).filter(|path| path.is_file()) else { return String::new() };
+    let here = std::env::current_dir().unwrap_or_default();
+    format!("Result: {}\n", path.strip_prefix(here).unwrap_or(&path).display())
 }
 
 /// What was done before the verdicts.
@@ -103,10 +117,10 @@ pub(super) fn conclude(study: &Study, choice: &Choice, done: Done) -> Result<Exi
     if !done.tables_only {
         take_snapshot(study, published)?;
     }
-    let (all, Done { verb, experiments, restored, .. }) = (chosen.count(), done);
+    let (all, Done { verb, experiments, restored, .. }) = (chosen.count(), &done);
     if all > 0 {
         let all = counted(all, "experiment", "experiments");
-        let restored = if restored == 0 { String::new() } else { format!(", {restored} restored") };
+        let restored = if *restored == 0 { String::new() } else { format!(", {restored} restored") };
         let written = format!("{} written", counted(written, "figure or report", "figures and reports"));
         print(&format!("{all}: {experiments} {verb}{restored}; {written}.\n"))?;
     }
@@ -117,7 +131,11 @@ pub(super) fn conclude(study: &Study, choice: &Choice, done: Done) -> Result<Exi
              `shotdamp run` makes all tables, and these pages once every reference can be read.\n"
         ))?;
     }
-    print(&verdicts_of(&judgement, &chosen.ids))?;
+    let planned = study.items.iter().map(|item| (item.source.experiment.id.0.as_str(), item.source.folder()));
+    let known = study.known.iter().map(|(id, known)| (id.as_str(), known.folder.as_str()));
+    let folders: BTreeMap<&str, &str> = planned.chain(known).collect();
+    let page = page_to_open(&study.layout, &chosen.ids, |id| folders.get(id).copied());
+    print(&(verdicts_of(&judgement, &chosen.ids) + if done.tables_only { "" } else { &page }))?;
     Ok(exit)
 }
 

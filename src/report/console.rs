@@ -14,9 +14,9 @@ const SHOWN: usize = 20;
 
 /// Counts by experiment, what is known to differ, what is unexpected; ends with a line that says it all.
 ///
-/// `experiments` are ids with their entries, in the order to show.
+/// `experiments` are names with their entries, in the order to show.
 #[must_use]
-pub fn summary(experiments: &[(&str, &[Judged])]) -> String {
+pub fn summary<N: AsRef<str>>(experiments: &[(N, &[Judged])]) -> String {
     let judged = || experiments.iter().flat_map(|(_, judged)| judged.iter());
     let mut text = format!("{}\n", table(experiments));
     let known: Vec<&Judged> = judged().filter(|one| one.as_expected() && one.verdict != Verdict::Reproduced).collect();
@@ -49,14 +49,14 @@ pub fn summary(experiments: &[(&str, &[Judged])]) -> String {
     text
 }
 
-fn table(experiments: &[(&str, &[Judged])]) -> Table {
+fn table<N: AsRef<str>>(experiments: &[(N, &[Judged])]) -> Table {
     let mut table = Table::new();
     table.load_style(TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'))).force_no_tty();
     let heads = ["experiment".to_owned()].into_iter().chain(VERDICTS.map(|verdict| word(verdict).to_owned()));
     table.set_header(heads.collect::<Vec<_>>());
     let surprises = |judged: &[Judged]| judged.iter().any(|one| !one.as_expected());
-    for (id, judged) in experiments.iter().filter(|(_, judged)| experiments.len() <= SHOWN || surprises(judged)) {
-        table.add_row(row(id, &Tally::of(*judged)));
+    for (name, judged) in experiments.iter().filter(|(_, judged)| experiments.len() <= SHOWN || surprises(judged)) {
+        table.add_row(row(name.as_ref(), &Tally::of(*judged)));
     }
     if experiments.len() > 1 {
         table.add_row(row("all", &Tally::of(experiments.iter().flat_map(|(_, judged)| judged.iter()))));

@@ -8,6 +8,9 @@ use super::markdown::one_line;
 use super::view::ExperimentView;
 use super::{chapter, headline, reading, strip};
 
+/// The index, by name within the study.
+pub const INDEX: &str = "reports/README.md";
+
 /// The pictures of the index, by name below `reports/`.
 pub(super) const STRIP: &str = "verdicts.svg";
 pub(super) const OVERVIEW: &str = "overview.svg";

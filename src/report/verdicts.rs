@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::prose;
 use crate::reference::{Judged, ReferenceFile, Role, SelfTestFailure, TableState, Tables, judge, self_test};
-use crate::study::{Item, Motions, State, Study, table_name};
+use crate::study::{Item, Motions, State, Study, is_begun, table_name};
 use crate::table::{Table, parquet};
 
 /// The tables that count, and the verdicts that they give.
@@ -16,6 +16,8 @@ pub struct Judgement {
     pub tables: BTreeMap<String, Table>,
     /// Verdicts by experiment, in the order of its reference file.
     pub verdicts: BTreeMap<String, Vec<Judged>>,
+    /// Why an experiment has no table that counts, by id.
+    pub untabled: BTreeMap<String, &'static str>,
     /// What moves how in those that were planned, where that is measured.
     pub motions: BTreeMap<String, Motions>,
 }
@@ -24,6 +26,8 @@ pub struct Judgement {
 enum OnDisk {
     Present(Table),
     Stale,
+    /// A run of it was interrupted.
+    Unfinished,
     NotRun,
     NoExperiment,
     Failed(String),
@@ -39,6 +43,13 @@ pub fn judge_all(study: &Study) -> Judgement {
     let verdict = |(id, file): (&String, &ReferenceFile)| (id.clone(), judged(study, file, &tables, &fitted));
     let mut verdicts = study.references.iter().map(verdict).chain(known).collect();
     prose::fill(&mut verdicts);
+    let why = |on_disk: &OnDisk| match on_disk {
+        OnDisk::Stale => Some("out of date"),
+        OnDisk::Unfinished => Some("unfinished"),
+        OnDisk::NotRun => Some("not run"),
+        OnDisk::Present(_) | OnDisk::NoExperiment | OnDisk::Failed(_) => None,
+    };
+    let untabled = states.iter().filter_map(|(id, on_disk)| Some((id.clone(), why(on_disk)?))).collect();
     let tables: BTreeMap<String, Table> = states
         .into_iter()
         .filter_map(|(id, state)| match state {
@@ -51,7 +62,7 @@ pub fn judge_all(study: &Study) -> Judgement {
         Some((experiment.id.0.clone(), Motions::of(experiment, tables.get(&experiment.id.0)?)?))
     };
     let motions = study.items.par_iter().filter_map(motions).collect();
-    Judgement { tables, verdicts, motions }
+    Judgement { tables, verdicts, untabled, motions }
 }
 
 /// The verdicts that these tables give, whatever they were computed from.
@@ -93,6 +104,7 @@ fn on_disk(study: &Study) -> BTreeMap<String, OnDisk> {
                 Err(error) => OnDisk::Failed(error.to_string()),
             },
             State::Stale(_) if study.layout.path(&table_name(id)).is_file() => OnDisk::Stale,
+            State::Stale(_) if is_begun(&study.layout, id) => OnDisk::Unfinished,
             State::Stale(_) => OnDisk::NotRun,
         };
         (id.to_string(), state)
@@ -121,7 +133,7 @@ impl OnDisk {
         match self {
             Self::Present(table) => TableState::Present(table),
             Self::Stale => TableState::Stale,
-            Self::NotRun => TableState::NotRun,
+            Self::NotRun | Self::Unfinished => TableState::NotRun,
             Self::NoExperiment => TableState::NoExperiment,
             Self::Failed(reason) => TableState::Failed(reason.clone()),
         }

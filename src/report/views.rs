@@ -50,9 +50,18 @@ fn accuracy(study: &Study, item: &Item, up: &str) -> Option<AccuracyLinks> {
 
 /// The page of an experiment, by name below `reports/`.
 pub(super) fn page_name(item: &Item) -> String {
-    let folder = item.source.folder();
+    below_reports(item.source.folder(), &item.source.experiment.id.0)
+}
+
+fn below_reports(folder: &str, id: &str) -> String {
     let folder = if folder.is_empty() { String::new() } else { format!("{folder}/") };
-    format!("{folder}{}.md", item.source.experiment.id)
+    format!("{folder}{id}.md")
+}
+
+/// The page of the experiment `id`, whose file lies in `folder` below `experiments/`, by name within the study.
+#[must_use]
+pub fn report_of(folder: &str, id: &str) -> String {
+    format!("reports/{}", below_reports(folder, id))
 }
 
 /// All experiments in the order of the index.
@@ -130,7 +139,8 @@ fn one_listed<'a>(
 /// The summary on the console, of the experiments and reference files in `ids`.
 #[must_use]
 pub fn summary_of(judgement: &Judgement, ids: &BTreeSet<&str>) -> String {
-    let judged: Vec<(&str, &[Judged])> = ids.iter().map(|id| (*id, judged(judgement, id))).collect();
+    let name = |id: &str| judgement.untabled.get(id).map_or_else(|| id.to_owned(), |why| format!("{id} ({why})"));
+    let judged: Vec<(String, &[Judged])> = ids.iter().map(|id| (name(id), judged(judgement, id))).collect();
     super::console::summary(&judged)
 }
 

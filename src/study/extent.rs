@@ -42,9 +42,8 @@ impl Item {
             let fingerprints = RowFingerprints::new(experiment).all(&self.variants, &jobs);
             let own = |row: &usize| jobs[*row].same_as.is_none();
             let to_do = (0..rows).filter(own).filter(|&row| known.group(fingerprints[row]).is_none()).count();
-            let share = to_do as f64 / (0..rows).filter(own).count().max(1) as f64;
-            let seconds = if to_do == 0 { Some(0.0) } else { spent.total().map(|seconds| seconds * share) };
             let simulations = to_do as u64 * u64::from(starts.count);
+            let seconds = if to_do == 0 { Some(0.0) } else { spent.each().map(|each| each * simulations as f64) };
             return Extent { to_do, rows, open: false, simulations, seconds };
         }
         if experiment.is_whole() {
@@ -62,17 +61,18 @@ impl Item {
         let units = units(experiment, &jobs).into_iter().filter(|unit| !is_known(unit));
         let to_do: Vec<&Job> = units.flatten().map(|row| &jobs[row]).collect();
         let all = Extent { to_do: to_do.len(), rows: jobs.len(), open: false, simulations, seconds: None };
+        let seconds: Option<f64> = to_do.iter().map(|job| ahead(experiment, job, &spent)).sum();
         if experiment.refined.is_empty() {
             let simulations = to_do.iter().map(|job| evaluations(experiment, job)).sum();
-            let seconds = to_do.iter().map(|job| ahead(experiment, job, &spent)).sum();
             return Extent { simulations, seconds, ..all };
         }
         if to_do.is_empty() {
             return Extent { simulations: 0, seconds: Some(0.0), ..all };
         }
-        // A missing row brings others with it; how many is estimated in proportion.
+        // A missing row brings others with it; how many is estimated in proportion, if an earlier run went so far.
         let share = to_do.len() as f64 / jobs.len() as f64;
-        Extent { open: true, seconds: spent.total().map(|seconds| seconds * share), ..all }
+        let in_proportion = spent.total().map(|total| total * share);
+        Extent { open: true, seconds: in_proportion.map(|most| most.max(seconds.unwrap_or(0.0))), ..all }
     }
 
     /// The experiment with the points that its curves get, as far as they follow from what is known.

@@ -90,7 +90,7 @@ pub use shard::{NotThePart, Shard, ShardError};
 pub use shares::{Attracting, BestMotion, CaseShares};
 pub use snapshot::Snapshot;
 pub use spent::{Cost, Spent};
-pub use store::{Held, Lock, LockError, keep, remove_journals, save};
+pub use store::{Held, Lock, LockError, is_begun, keep, remove_journals, save};
 pub use summary::{Heading, Summary, Used};
 pub use texts::{Bytes, Texts, Unreadable};
 pub use threshold::{ThresholdAlong, thresholds};

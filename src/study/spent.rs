@@ -72,13 +72,21 @@ impl Spent {
         let _ = fs::remove_file(layout.path(&name(id)));
     }
 
-    /// Estimated time of `simulations` of a kind, s; `None` if there was none so far.
+    /// Estimated time of `simulations` of a kind, s; by others of the same solver if there was none so far, and `None` without any.
     pub(super) fn ahead(&self, solver: SolverChoice, rigour: Rigour, simulations: u64) -> Option<f64> {
         if simulations == 0 {
             return Some(0.0);
         }
-        let Cost { simulations: before, seconds } = *self.0.get(&kind(solver, rigour))?;
+        let of_solver = || self.0.iter().find(|(kind, _)| kind.starts_with(&format!("{} ", solver.label())));
+        let known = self.0.get(&kind(solver, rigour)).or_else(|| of_solver().map(|(_, cost)| cost));
+        let Cost { simulations: before, seconds } = *known?;
         (before > 0).then(|| seconds / before as f64 * simulations as f64)
+    }
+
+    /// What a simulation took on average, s; `None` if there was none.
+    pub(super) fn each(&self) -> Option<f64> {
+        let simulations: u64 = self.0.values().map(|cost| cost.simulations).sum();
+        (simulations > 0).then(|| self.total().map(|total| total / simulations as f64))?
     }
 
     /// All of it, s; `None` if there is nothing.

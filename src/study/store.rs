@@ -65,7 +65,18 @@ fn remove_journal(layout: &Layout, id: &ExperimentId) {
 /// # Errors
 /// [`ParquetError`] if they cannot be written.
 pub fn keep(layout: &Layout, item: &Item, finished: &Finished) -> Result<(), ParquetError> {
-    if finished.has_rows_to_keep() { earlier::add(layout, &item.source.experiment.id, &finished.table) } else { Ok(()) }
+    let id = &item.source.experiment.id;
+    if !finished.has_rows_to_keep() {
+        return Ok(());
+    }
+    finished.spent.keep(layout, id);
+    earlier::add(layout, id, &finished.table)
+}
+
+/// True if a run of the experiment has left something to go on from.
+#[must_use]
+pub fn is_begun(layout: &Layout, id: &ExperimentId) -> bool {
+    layout.path(&journal_name(id)).is_file() || earlier::any(layout, id)
 }
 
 /// Held while files are written; other runs wait. The system gives it back when the process ends, however it ends.

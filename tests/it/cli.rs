@@ -48,6 +48,13 @@ fn the_first_run_publishes_and_the_second_has_nothing_to_do() {
     assert_eq!(shotdamp(&desk, &["status", "--exit-code"]).code, 0);
     assert!(before == files(desk.folder.path()), "nothing was written");
 
+    // Its last line names the page to open.
+    for (arguments, page) in [(&["run"][..], "README.md"), (&["run", "ch3-gap"], "ch3/ch3-gap.md")] {
+        let last = shotdamp(&desk, arguments).out.lines().last().unwrap_or_default().to_owned();
+        let named = last.strip_prefix("Result: ").unwrap_or_else(|| panic!("{last}"));
+        assert!(named.ends_with(&format!("reports/{page}")) && desk.folder.path().join(named).is_file(), "{last}");
+    }
+
     // No time, host or folder in anything that was written: another folder gives the same bytes.
     let other = simulated();
     shotdamp(&other, &["run", "--jobs", "1"]);

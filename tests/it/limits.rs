@@ -113,7 +113,9 @@ fn an_interrupted_run_keeps_the_rows_it_has() {
     // No table is in force, and the next run has one row to do.
     assert!(!desk.layout.path("results/ch3-long.parquet").exists());
     let ahead = shotdamp(&desk, &["run", "--dry-run"]).out;
-    assert!(ahead.contains("1 of 2 rows to simulate"), "{ahead}");
+    assert!(ahead.contains("1 of 2 rows to simulate") && !ahead.contains("time not known"), "{ahead}");
+    let checked = shotdamp(&desk, &["check"]).out;
+    assert!(checked.contains("ch3-long (unfinished)"), "{checked}");
 }
 
 #[test]
