@@ -8,7 +8,7 @@ use std::path::Path;
 use super::other_pages::is_written_otherwise;
 use super::pages::{NotDrawn, render, rendered};
 use super::verdicts::Judgement;
-use crate::study::{Study, stem};
+use crate::study::{Refused, Study, stem};
 
 /// Folders in folders below `reports/`; ends a walk that a link leads in a circle.
 const DEEPEST: u32 = 8;
@@ -35,6 +35,8 @@ pub enum How {
     Extra,
     /// There is no table that is up to date.
     NoTable,
+    /// It holds verdicts, and a reference cannot be read.
+    NotJudged,
     /// It cannot be drawn, for this reason.
     NotDrawn(NotDrawn),
     /// It cannot be read, for this reason.
@@ -52,9 +54,16 @@ pub enum How {
     Byte(usize),
 }
 
-/// Every file below `reports/` that departs from what would be written, in the order of the names.
+/// Every file below `reports/` that departs from what would be written, in the order of the names; while references cannot be read,
+/// these alone.
 #[must_use]
 pub fn departures(study: &Study, judgement: &Judgement) -> Vec<Departure> {
+    // Its verdicts stand on the pages of other experiments, too, and a variant that only its entries ask for is not planned.
+    let unread = study.unread.iter().map(Refused::file).filter(|file| file.starts_with("reference/"));
+    let unread: Vec<_> = unread.map(|file| Departure { file: file.into(), how: How::NotJudged }).collect();
+    if !unread.is_empty() {
+        return unread;
+    }
     let expected = render(study, judgement);
     let mut found: Vec<Departure> = Vec::new();
     for (file, bytes) in &expected {
@@ -161,6 +170,7 @@ impl fmt::Display for Departure {
             How::Missing => write!(f, "{file}: is not there"),
             How::Extra => write!(f, "{file}: nothing writes it; remove it"),
             How::NoTable => write!(f, "{file}: there is no table that is up to date; `shotdamp run` makes it"),
+            How::NotJudged => write!(f, "reports cannot be checked while {file} cannot be read"),
             How::NotDrawn(why) => write!(f, "{file}: cannot be drawn: {why}"),
             How::Unreadable(why) => write!(f, "{file}: cannot be read: {why}"),
             How::Byte(at) => write!(f, "{file}: differs from byte {at} on"),

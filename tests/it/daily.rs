@@ -372,6 +372,9 @@ fn a_mistake_in_a_reference_leaves_its_verdicts_on_the_pages() {
     let run = shotdamp(&desk, &["run"]);
     assert!(run.code == 2 && run.out.contains("whose reference cannot be read"), "{}{}", run.out, run.err);
     assert_eq!(read(), judged);
+    let check = shotdamp(&desk, &["check", "--reports"]);
+    let unchecked = "error: reports cannot be checked while reference/ch3/ch3-gap.yaml cannot be read\n";
+    assert!(check.code == 2 && check.err.contains(unchecked) && !check.err.contains("differs"), "{}", check.err);
     desk.put("reference/ch3/ch3-gap.yaml", GAP_REFERENCE);
     assert_eq!(shotdamp(&desk, &["run", "-q"]).code, 0);
     assert_eq!(read(), judged);
