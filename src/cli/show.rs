@@ -17,7 +17,9 @@ use super::select::{choose, matches, no_match};
 use super::thresholds;
 use crate::accuracy::{idle_cases, out_of_reach_in_words, unreached_cases};
 use crate::dynamics::{Allowance, Limit, Until, in_words};
-use crate::experiment::{Assumptions, Case, Continuation, Experiment, RowSource, value_in_words};
+use crate::experiment::{
+    Assumptions, Case, Continuation, Experiment, GapRecipe, Given, Recipe, RowSource, value_in_words,
+};
 use crate::measure::Settings;
 use crate::report::{LastVerdicts, VERDICTS, scenes};
 use crate::scene::{Scene, effects};
@@ -221,13 +223,21 @@ fn first_scene(assumptions: &Assumptions, experiment: &Experiment) -> String {
         (Some(first), Some(with)) if first != with => (Some(with), "first case with dampers"),
         (first, _) => (first, "first case"),
     };
-    let scene = first.and_then(|case| experiment.recipe_of(case).ok()?.resolve(assumptions).ok());
+    let recipe = first.and_then(|case| experiment.recipe_of(case).ok());
+    let scene = recipe.as_ref().and_then(|recipe| recipe.resolve(assumptions).ok());
     let case = first.map(|case| case.describe()).filter(|case| !case.is_empty());
     let mut text = format!("\nScene{}\n", case.map_or_else(String::new, |case| format!(" of the {which} ({case})")));
     for line in scene.as_ref().map(Scene::describe).unwrap_or_default() {
         text += &format!("  {line}\n");
     }
-    text
+    let unit_gap = recipe.zip(scene).and_then(|(recipe, scene)| unit_gap(&recipe, &scene));
+    text + &unit_gap.map_or_else(String::new, |gap| format!("  h′ = 1 is a gap of {}\n", quantity(gap, "m", 5)))
+}
+
+/// The gap clearance that h′ = 1 stands for, m, where the first damper states the ratio.
+fn unit_gap(recipe: &Recipe, scene: &Scene) -> Option<f64> {
+    let GapRecipe::Ratio(Given::Stated(ratio)) = recipe.dampers.first()?.gap else { return None };
+    Some(scene.dampers.first()?.gap / ratio).filter(|gap| gap.is_finite())
 }
 
 fn in_force(scenes: &[Scene]) -> String {

@@ -393,10 +393,10 @@ impl Case {
     pub fn describe(&self) -> String {
         let description = self.values.iter().map(|(parameter, value)| {
             let value = match value {
-                ParameterValue::Number(number) => number.to_string(),
+                ParameterValue::Number(number) => format!("{number} {}", parameter.unit()),
                 other => word_of(*other),
             };
-            format!("{} = {value}", word_of(*parameter))
+            format!("{} = {}", word_of(*parameter), value.trim_end())
         });
         let direction = self.direction.map(|direction| format!("direction = {}", word_of(direction)));
         description.chain(direction).collect::<Vec<_>>().join(", ")

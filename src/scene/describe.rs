@@ -1,5 +1,7 @@
 //! A scene in words and SI units, for a person who asks what is simulated.
 
+use std::f64::consts::TAU;
+
 use super::{
     ContactDamping, ContactEnd, Damper, Excitation, Observation, Point, PulseShape, Scene, Start, Structure, Surface,
     Take,
@@ -16,7 +18,7 @@ impl Scene {
         let model = self.structure.model();
         let sides = model.sides();
         let mut lines = vec![model.describe()];
-        lines.extend(off_the_continuous(&self.structure));
+        lines.extend(natural_frequency(&self.structure));
         if self.dampers.is_empty() {
             lines.push("no damper".into());
         } else {
@@ -32,18 +34,20 @@ impl Scene {
     }
 }
 
-/// The first natural frequency where a model of few coordinates has another than the continuous structure.
-fn off_the_continuous(structure: &Structure) -> Option<String> {
+/// The first natural frequency, and how far off it is where a model of few coordinates has another than the continuous structure;
+/// nothing of a structure without a spring.
+fn natural_frequency(structure: &Structure) -> Option<String> {
     let model = structure.model();
-    let (own, exact) = (*model.natural_frequencies().first()?, model.exact_frequency(1)?);
-    let off = own / exact - 1.0;
-    (off.abs() > 0.01).then(|| {
-        let side = if off > 0.0 { "above" } else { "below" };
-        let (own, percent) = (value(own, "rad/s"), compact(100.0 * off.abs(), 2));
-        format!(
-            "first natural frequency {own}, {percent} % {side} the continuous structure's: more modes bring it nearer"
-        )
-    })
+    let own = model.natural_frequencies().first().copied().filter(|own| *own > 0.0)?;
+    let first = if model.sides().is_empty() { "" } else { "first " };
+    let line = format!("{first}natural frequency {} ({})", value(own, "rad/s"), value(own / TAU, "Hz"));
+    let off = model.exact_frequency(1).map_or(0.0, |exact| own / exact - 1.0);
+    if off.abs() <= 0.01 {
+        return Some(line);
+    }
+    let side = if off > 0.0 { "above" } else { "below" };
+    let percent = compact(100.0 * off.abs(), 2);
+    Some(format!("{line}, {percent} % {side} the continuous structure's: more modes bring it nearer"))
 }
 
 impl Damper {
