@@ -456,8 +456,9 @@ impl SceneReader<'_> {
             return self.by_default(slot, kind).or_else(|| {
                 let word = word_of(slot);
                 let message = format!("no assumption stands for `{word}` on {}", kind.what);
-                let help =
-                    format!("write `{{assumed: NAME}}`, or declare one under `defaults: {word}` in {ASSUMPTIONS}");
+                let help = format!(
+                    "write a value, or `{{assumed: NAME}}`, or declare an assumption under `defaults: {word}` in {ASSUMPTIONS}"
+                );
                 at.report(message, Some(help))
             });
         }

@@ -646,8 +646,8 @@ zeta: {quantity: ratio, readings: [equivalent_viscous], value: 0.1, reason: none
     );
     assert_eq!(
         one(&GOOD.replace("60 mm", "{assumed: length}")),
-        "9:62 no assumption stands for `damping_ratio` on a single mass | write `{assumed: NAME}`, or declare one under \
-         `defaults: damping_ratio` in experiments/assumptions.yaml"
+        "9:62 no assumption stands for `damping_ratio` on a single mass | write a value, or `{assumed: NAME}`, or declare an \
+         assumption under `defaults: damping_ratio` in experiments/assumptions.yaml"
     );
     assert_eq!(
         one(&stated.replace("assumed: length", "assumed: clearance")),
