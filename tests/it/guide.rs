@@ -8,7 +8,7 @@ use shotdamp::experiment::{BasinColumn, BranchColumn};
 use shotdamp::measure::Measure;
 use shotdamp::report::RELEASED;
 use shotdamp::study::Study;
-use shotdamp::study::{IgnoreEvents, Layout, Texts};
+use shotdamp::study::{IgnoreEvents, Layout, Texts, stem};
 use shotdamp::text::words;
 
 use crate::desk::{Desk, MadeUp};
@@ -71,14 +71,20 @@ fn the_commands_of_the_guide_print_what_it_says() {
     }
     let guide = document("docs/guide.md");
     let files = blocks(&guide, "yaml");
-    assert_eq!(files.len(), 1);
-    for file in files {
-        let name = file.lines().next().unwrap().trim_start_matches("# ");
+    let names: Vec<&str> = files.iter().map(|file| file.lines().next().unwrap().trim_start_matches("# ")).collect();
+    for (name, file) in names.iter().zip(&files) {
         let path = folder.path().join(name);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(path, file).unwrap();
     }
     let binary = assert_cmd::cargo::cargo_bin("shotdamp");
+    for id in names.iter().map(|name| stem(name)) {
+        let shown = Command::new(&binary).args(["show", id]).current_dir(folder.path()).output().unwrap();
+        assert!(shown.status.success(), "{id}: {}", String::from_utf8_lossy(&shown.stderr));
+    }
+    // A whole experiment that stands indented would go untested.
+    let whole = guide.lines().filter(|line| line.trim_start().starts_with("scene:")).count();
+    assert_eq!(whole, files.len());
     let path = format!("{}:{}", binary.parent().unwrap().display(), std::env::var("PATH").unwrap());
     let mut tried = 0;
     for (command, expected) in blocks(&guide, "console").into_iter().flat_map(commands) {
