@@ -94,6 +94,14 @@ impl Four {
         let [a, b, c, d] = self.array();
         larger(larger(a, c), larger(b, d))
     }
+
+    /// The least of them.
+    #[inline(always)]
+    pub(crate) fn least(self) -> f64 {
+        let less = |a: f64, b: f64| if a < b { a } else { b };
+        let [a, b, c, d] = self.array();
+        less(less(a, c), less(b, d))
+    }
 }
 
 impl Default for Four {

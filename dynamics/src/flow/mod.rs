@@ -3,6 +3,7 @@
 //! The blocks of its modes ([`crate::contact_state`]) move each by itself; a harmonic drive is one more of them. Gap, amplitude
 //! and time do not enter, so one flow serves a whole sweep.
 
+pub(crate) mod cells;
 mod dissipation;
 pub(crate) mod gains;
 pub(crate) mod integral;
@@ -32,6 +33,7 @@ use crate::contact_state::block::Block;
 use crate::contact_state::conservative::Conservative;
 use crate::contact_state::load::{self, Load, Steady};
 use crate::error::EngineError;
+use crate::flow::cells::Cells;
 use crate::flow::dissipation::Dissipation;
 use crate::flow::gains::{Closed, VelocitySquare};
 use crate::flow::parabola::Parabola;
@@ -52,6 +54,8 @@ pub(crate) struct Flow {
     pub(crate) series: Series,
     /// Transfers over whole steps, where a contact state is visited often enough.
     pub(crate) steps: Option<Steps>,
+    /// Its motion by cells, where it has few blocks.
+    pub(crate) cells: Option<Box<Cells>>,
     /// Those of its own, with their matrices.
     propagators: Vec<Propagator>,
     /// Blocks without the drive.
@@ -149,9 +153,12 @@ impl Flow {
         }
         let slowest = blocks[..own].iter().fold(f64::INFINITY, |least, block| block.radius.min(least));
         let series = series.of(&blocks);
+        let bank = bank.of(&blocks);
+        let few = bank.blocks.len() == 1 && system.drive.half_cycles.is_none();
         let mut flow = Self {
             slowest,
-            bank: bank.of(&blocks),
+            cells: few.then(|| Box::new(Cells::new(&bank, &blocks, series.pace))),
+            bank,
             steps: system.drive.half_cycles.is_none().then(|| Steps::new(series.pace)),
             series,
             propagators: Propagator::of(propagators, &modes.spectral.matrices, &blocks),
@@ -181,6 +188,7 @@ impl Flow {
             + self.rows.size()
             + self.faces.get().map_or(0, |faces| 8 * faces.len() * self.blocks.len())
             + self.steps.as_ref().map_or(0, Steps::size)
+            + self.cells.as_ref().map_or(0, |_| Cells::size())
             + self.closed.get().and_then(Option::as_ref).map_or(0, Closed::size)
             + self.velocity_squares.get().map_or(0, |rows| rows.iter().map(VelocitySquare::size).sum())
             + self.dissipation.get().map_or(0, Dissipation::size)
@@ -395,8 +403,15 @@ impl Flow {
     }
 
     /// So short a time that its slowest block has hardly turned.
+    #[inline]
     pub(crate) fn is_brief(&self, time: f64) -> bool {
-        self.slowest * time < crate::flow::integral::BRIEF
+        self.turned_by_the_slowest(time) < crate::flow::integral::BRIEF
+    }
+
+    /// radius·t of its slowest block.
+    #[inline]
+    pub(crate) fn turned_by_the_slowest(&self, time: f64) -> f64 {
+        self.slowest * time
     }
 
     /// Kernels of a time.

@@ -20,6 +20,7 @@
 //! What a root is to the last digit, [`polish`] tells; since no window is seen in it, windows may begin where kernels are cheap, at
 //! [`crate::flow::steps::Steps`].
 
+mod cells;
 pub(crate) mod guards;
 mod polynomial;
 mod survey;
@@ -229,7 +230,15 @@ impl Search {
         let Flow { blocks: each, bank, series, steps, .. } = flow;
         let motion = |blocks| Motion { blocks, each, bank, series, steps: steps.as_ref() };
         match &flow.bank.blocks[..] {
-            few @ [_] => self.first(motion(few), signals, limit, clarity),
+            few @ [_] => {
+                if let Some(cells) = &flow.cells
+                    && self.window_factor == 1.0
+                    && let Some(found) = self.by_cells(motion(few), cells, signals, limit, clarity)
+                {
+                    return found;
+                }
+                self.first(motion(few), signals, limit, clarity)
+            }
             many => self.first(motion(many), signals, limit, clarity),
         }
     }

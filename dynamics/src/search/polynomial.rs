@@ -1,6 +1,8 @@
 //! Polynomials of windows, of degree eleven on [0, 1]: values, Bernstein coefficients, roots; and the nearest root of an expansion to the
 //! seventh order.
 
+use crate::arithmetic::four::Four;
+
 /// Degree of the window polynomials: twelve coefficients, which fill whole vector registers.
 pub(crate) const DEGREE: usize = 11;
 
@@ -76,6 +78,99 @@ const INVERSE_BINOMIAL: Coefficients = {
     }
     table
 };
+
+/// The root below `high` by Newton steps from `x`, to three digits or so. Gives with it the slope before the last step,
+/// and that step.
+#[inline(always)]
+pub(crate) fn root(evaluate: impl Fn(f64) -> (f64, f64), mut x: f64, high: f64) -> (f64, f64, f64) {
+    let (mut lower, mut upper) = (0.0, high);
+    let mut last = (x, f64::NAN, f64::INFINITY);
+    for _ in 0..60 {
+        let (value, slope) = evaluate(x);
+        if value > 0.0 {
+            lower = x
+        } else {
+            upper = x
+        }
+        let mut next = x - value / slope;
+        if !(next > lower && next < upper) {
+            next = 0.5 * (lower + upper);
+        }
+        let step = (next - x).abs();
+        x = next;
+        last = (x, slope, step);
+        // Quadratic convergence: the next step would be the square of this.
+        if step < 0.03 * x {
+            break;
+        }
+    }
+    last
+}
+
+/// Whether a polynomial may fall and rise again: by Descartes' rule for its slope not if its coefficients rise up to one and fall from
+/// there on.
+#[inline(always)]
+pub(crate) fn may_turn<const N: usize>(b: &[f64; N]) -> bool {
+    let steps: [f64; N] = std::array::from_fn(|i| if i + 1 < N { b[i + 1] - b[i] } else { f64::NEG_INFINITY });
+    !Signs::of(&steps, 0.0).positive_then_negative()
+}
+
+/// Which Bernstein coefficients are surely positive, and which surely negative: one bit each, the first the lowest.
+#[derive(Clone, Copy)]
+pub(crate) struct Signs<const N: usize> {
+    pub(crate) positive: u64,
+    negative: u64,
+}
+
+impl<const N: usize> Signs<N> {
+    const ALL: u64 = (1 << N) - 1;
+
+    #[inline(always)]
+    pub(crate) fn of(b: &[f64; N], doubt: f64) -> Self {
+        // Their bits are summed up as numbers, several at a time; those of 2⁵² + n end in those of n.
+        const MANY: f64 = (1_u64 << 52) as f64;
+        let behind = (1 << N) as f64;
+        let (mut sum, mut bits) = (Four::ZERO, Four::new([1.0, 2.0, 4.0, 8.0]));
+        for b in b.as_chunks().0 {
+            let positive = Four::new(*b).zip(bits, |b, bit| if b > doubt { bit } else { 0.0 });
+            let negative = Four::new(*b).zip(bits * behind, |b, bit| if b < -doubt { bit } else { 0.0 });
+            (sum, bits) = (sum + positive + negative, bits * 16.0);
+        }
+        let both = (sum.sum() + MANY).to_bits();
+        Self { positive: both & Self::ALL, negative: both >> N & Self::ALL }
+    }
+
+    #[inline(always)]
+    pub(crate) fn are_all_positive(self) -> bool {
+        self.positive == Self::ALL
+    }
+
+    /// Positive, then doubtful, then negative; any of them may be missing.
+    #[inline(always)]
+    pub(crate) fn positive_then_negative(self) -> bool {
+        come_first(self.positive) && come_first(Self::ALL & !self.negative)
+    }
+
+    /// The same with both ends.
+    #[inline(always)]
+    pub(crate) fn change_once(self) -> bool {
+        self.positive != 0 && self.negative != 0 && self.positive_then_negative()
+    }
+
+    /// Where the control polygon falls to `level`, behind the coefficients that are surely positive.
+    #[inline(always)]
+    pub(crate) fn crossing(self, b: &[f64; N], level: f64) -> f64 {
+        let first = self.positive.trailing_ones() as usize;
+        let (before, after) = (b[first - 1], b[first]);
+        ((first - 1) as f64 + (before - level) / (before - after)).min(first as f64) * const { 1.0 / (N - 1) as f64 }
+    }
+}
+
+/// The coefficients of these bits are the first ones, or none.
+#[inline(always)]
+pub(crate) fn come_first(bits: u64) -> bool {
+    bits & (bits + 1) == 0
+}
 
 /// The root of smallest modulus of a polynomial whose constant is small; NaN if that does not settle.
 ///

@@ -3,7 +3,7 @@
 use crate::arithmetic::four::Four;
 use crate::flow::parabola::Parabola;
 use crate::flow::series::{Bounds, Series, Shares, Span};
-use crate::search::polynomial::{Coefficients, DEGREE, bernstein, cut, evaluate};
+use crate::search::polynomial::{Coefficients, DEGREE, Signs, bernstein, come_first, cut, evaluate, may_turn, root};
 
 /// How a guard starts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,7 +104,7 @@ impl Window {
     pub(crate) fn judge(&self, margin: f64, bend: impl FnOnce(usize) -> f64) -> Verdict {
         let b = &self.b;
         let signs = Signs::of(b, self.remainder);
-        if signs.positive == Signs::ALL {
+        if signs.are_all_positive() {
             return Verdict::Clear;
         }
         if self.leaves_blocks {
@@ -141,7 +141,8 @@ impl Window {
             return None;
         }
         let b = &self.b;
-        let slope = std::array::from_fn(|i| order as f64 * b[i] + i as f64 * (b[i] - b[i.saturating_sub(1)]));
+        let slope: Coefficients =
+            std::array::from_fn(|i| order as f64 * b[i] + i as f64 * (b[i] - b[i.saturating_sub(1)]));
         (!Signs::of(&slope, 0.0).positive_then_negative())
             .then_some(NearMiss { clearance: f64::INFINITY, is_sharp: false })
     }
@@ -188,28 +189,20 @@ impl Window {
         let mut above = self.a;
         above[0] -= level;
         // Newton has the root to three digits or so; a little before it the polynomial is still above.
-        let sigma = 0.98 * root(&above, self.crossing(signs, level), 1.0).0;
+        let sigma = 0.98 * root(|x| evaluate(&above, x), signs.crossing(&self.b, level), 1.0).0;
         if evaluate(&above, sigma).0 > 0.0 { Verdict::Until { sigma } } else { Verdict::Unsure }
-    }
-
-    /// Where the control polygon falls to `level`, behind the coefficients that are surely positive.
-    #[inline(always)]
-    fn crossing(&self, signs: Signs, level: f64) -> f64 {
-        let first = signs.positive.trailing_ones() as usize;
-        let (before, after) = (self.b[first - 1], self.b[first]);
-        ((first - 1) as f64 + (before - level) / (before - after)).min(first as f64) * (1.0 / DEGREE as f64)
     }
 
     /// Descartes' rule in Bernstein form: coefficients positive, then doubtful, then negative. The guard is positive before
     /// the band where polynomial and remainder cannot be told apart, negative behind it, and falls all through it, since
     /// its slope there is more than its second derivative can turn. Gives a first guess of the root.
     #[inline(always)]
-    fn single_crossing(&self, signs: Signs, bend: impl FnOnce(usize) -> f64) -> Option<f64> {
+    fn single_crossing(&self, signs: Signs<{ DEGREE + 1 }>, bend: impl FnOnce(usize) -> f64) -> Option<f64> {
         let doubt = self.remainder;
         if !signs.change_once() {
             return None;
         }
-        let (guess, slope, step) = root(&self.a, self.crossing(signs, 0.0), 1.0);
+        let (guess, slope, step) = root(|x| evaluate(&self.a, x), signs.crossing(&self.b, 0.0), 1.0);
         let order = match self.start {
             Start::Apart => 0,
             Start::Touching { order, .. } => order,
@@ -255,7 +248,7 @@ impl Window {
             // A jump has left the contact untenable: it ends at once.
             return Verdict::Root { guess: 0.0, high: 0.0 };
         }
-        let root = |high: f64| Verdict::Root { guess: root(&self.a, high, high).0, high };
+        let root = |high: f64| Verdict::Root { guess: root(|x| evaluate(&self.a, x), high, high).0, high };
         if (falls || concave) && end < -doubt {
             return root(1.0);
         }
@@ -331,14 +324,6 @@ impl Window {
     }
 }
 
-/// Whether a polynomial may fall and rise again: by Descartes' rule for its slope not if its coefficients rise up to one and fall from
-/// there on.
-#[inline(always)]
-fn may_turn(b: &Coefficients) -> bool {
-    let steps = std::array::from_fn(|i| if i < DEGREE { b[i + 1] - b[i] } else { f64::NEG_INFINITY });
-    !Signs::of(&steps, 0.0).positive_then_negative()
-}
-
 /// The lowest place below `known` at which a polynomial turns from falling to rising, to a hundredth and from below; `known` if there
 /// is none.
 fn dip(b: &Coefficients, known: f64, halvings: u32) -> f64 {
@@ -353,34 +338,6 @@ fn dip(b: &Coefficients, known: f64, halvings: u32) -> f64 {
     let [left, right] = cut(b, 0.5);
     let known = dip(&left, known, halvings - 1);
     dip(&right, known, halvings - 1)
-}
-
-/// The root below `high` by Newton steps from `x`, to three digits or so. Gives with it the slope before the last step,
-/// and that step.
-#[inline]
-fn root(a: &Coefficients, mut x: f64, high: f64) -> (f64, f64, f64) {
-    let (mut lower, mut upper) = (0.0, high);
-    let mut last = (x, f64::NAN, f64::INFINITY);
-    for _ in 0..60 {
-        let (value, slope) = evaluate(a, x);
-        if value > 0.0 {
-            lower = x
-        } else {
-            upper = x
-        }
-        let mut next = x - value / slope;
-        if !(next > lower && next < upper) {
-            next = 0.5 * (lower + upper);
-        }
-        let step = (next - x).abs();
-        x = next;
-        last = (x, slope, step);
-        // Quadratic convergence: the next step would be the square of this.
-        if step < 0.03 * x {
-            break;
-        }
-    }
-    last
 }
 
 /// The coefficients in σ of a guard divided by σ^`ORDER`.
@@ -406,50 +363,6 @@ fn scaled<const ORDER: usize>(series: [[f64; 4]; 3], sign: f64, base: &[f64; 3],
         a[j - ORDER] += base[j];
     }
     a
-}
-
-/// Which Bernstein coefficients are surely positive, and which surely negative: one bit each, the first the lowest.
-#[derive(Clone, Copy)]
-struct Signs {
-    positive: u64,
-    negative: u64,
-}
-
-impl Signs {
-    const ALL: u64 = (1 << (DEGREE + 1)) - 1;
-
-    #[inline(always)]
-    fn of(b: &Coefficients, doubt: f64) -> Self {
-        // Their bits are summed up as numbers, several at a time; those of 2⁵² + n end in those of n.
-        const MANY: f64 = (1_u64 << 52) as f64;
-        let behind = (1 << (DEGREE + 1)) as f64;
-        let (mut sum, mut bits) = (Four::ZERO, Four::new([1.0, 2.0, 4.0, 8.0]));
-        for b in b.as_chunks().0 {
-            let positive = Four::new(*b).zip(bits, |b, bit| if b > doubt { bit } else { 0.0 });
-            let negative = Four::new(*b).zip(bits * behind, |b, bit| if b < -doubt { bit } else { 0.0 });
-            (sum, bits) = (sum + positive + negative, bits * 16.0);
-        }
-        let both = (sum.sum() + MANY).to_bits();
-        Self { positive: both & Self::ALL, negative: both >> (DEGREE + 1) & Self::ALL }
-    }
-
-    /// Positive, then doubtful, then negative; any of them may be missing.
-    #[inline(always)]
-    fn positive_then_negative(self) -> bool {
-        come_first(self.positive) && come_first(Self::ALL & !self.negative)
-    }
-
-    /// The same with both ends.
-    #[inline(always)]
-    fn change_once(self) -> bool {
-        self.positive != 0 && self.negative != 0 && self.positive_then_negative()
-    }
-}
-
-/// The coefficients of these bits are the first ones, or none.
-#[inline(always)]
-fn come_first(bits: u64) -> bool {
-    bits & (bits + 1) == 0
 }
 
 #[cfg(test)]

@@ -1,0 +1,229 @@
+//! The first event of a flow of few blocks, by cells: most segments of one mass with its damper are decided by two or three products.
+//!
+//! Over a cell of D seconds a guard g, or g/σ where it starts at zero, is a polynomial p of the seventh degree, and R bounds what that leaves
+//! out ([`crate::flow::cells`]). Bernstein coefficients that all exceed R prove it positive. Positive ones, then doubtful ones, then
+//! negative ones prove that p ± R have one root each, by Descartes' rule; and that of g is the only one if p falls so steeply there that
+//! neither its bend over Newton's last step nor what is left out can turn it. Whatever else is seen is left to windows: near misses,
+//! roots at the same time, starts of a higher order, long ways. What a root is to the last digit is not seen in the cell, so that both give
+//! the same bits.
+
+use crate::arithmetic::four::Four;
+use crate::contact_state::bank::{Kernels, Phases, Transfer};
+use crate::flow::cells::{Cell, Cells, KEPT, REACH, Tables};
+use crate::flow::signals::Signals;
+use crate::search::polish::SHORT_HOP;
+use crate::search::polynomial::{Signs, may_turn, root};
+use crate::search::survey::Motion;
+use crate::search::window::Start;
+use crate::search::{AFTER, Clarity, Found, Guard, Root, Search, is_never_reached};
+
+/// Newton's last step may turn the slope by so many times what it passes over.
+const DOUBTFUL_STEP: f64 = 1.5;
+/// Roundings of a guard's value.
+const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
+
+/// A guard over a cell, divided by σ where it starts at zero.
+struct Piece<'a> {
+    tables: &'a Tables,
+    shares: Phases,
+    /// Coefficients of 1, σ and σ² beside those of the tables.
+    base: [f64; 3],
+    /// Bernstein coefficients of the polynomial.
+    b: Cell,
+    left_out: f64,
+    touches: bool,
+}
+
+/// The one root of a guard in a cell.
+struct Fall {
+    guard: usize,
+    /// First guess of its σ.
+    guess: f64,
+    /// By powers of σ.
+    powers: [f64; KEPT],
+    left_out: f64,
+}
+
+impl Search {
+    /// The first event before `limit`, where cells tell; leaves the kernels of that time, or of the limit.
+    #[inline(always)]
+    pub(super) fn by_cells(
+        &mut self,
+        motion: Motion<'_>,
+        cells: &Cells,
+        signals: &Signals,
+        limit: f64,
+        clarity: &mut Clarity,
+    ) -> Option<Found> {
+        let far = self.out_of_reach(motion, signals, clarity)?;
+        for (i, transfer) in cells.transfers.iter().enumerate() {
+            let now = i as f64 * cells.length;
+            let ends_later = now + cells.length >= limit;
+            let [mut first, mut later]: [Option<Fall>; 2] = [None, None];
+            for (index, guard) in self.guards.iter().enumerate().filter(|(index, _)| far & 1 << index == 0) {
+                let piece = Piece::of(motion, cells, guard, signals, (now, transfer));
+                if piece.least() > piece.left_out {
+                    if guard.distance && piece.may_come_near(clarity.margin) {
+                        return None;
+                    }
+                    continue;
+                }
+                let fall = piece.fall(cells, index, guard.distance)?;
+                if ends_later && fall.comes_after((limit - now) / cells.length) {
+                    continue;
+                }
+                if later.is_some() || piece.touches && fall.guess * REACH < SHORT_HOP {
+                    return None;
+                }
+                let precedes = first.as_ref().is_some_and(|first| first.guess <= fall.guess);
+                (first, later) = if precedes { (first, Some(fall)) } else { (Some(fall), first) };
+            }
+            if let Some(Fall { guard, guess, .. }) = first {
+                let window = cells.length;
+                self.trial.resize(1, Kernels::NONE);
+                self.surveys.now = now;
+                let time = self.polish(motion, signals, Root { guard, guess, high: 1.0, window }, clarity);
+                if later.is_some_and(|later| !later.comes_after((time * AFTER - now) / window)) {
+                    return None;
+                }
+                std::mem::swap(&mut self.kernels, &mut self.trial);
+                return Some(Found::Event { guard, time });
+            }
+            if ends_later {
+                self.kernels.resize(1, Kernels::NONE);
+                motion.kernels(limit, &mut self.kernels);
+                return Some(Found::Nothing);
+            }
+        }
+        None
+    }
+
+    /// Guards that are further from zero than their signals can move them, one bit each; `None` where one starts as cells do not.
+    #[inline(always)]
+    fn out_of_reach(&self, motion: Motion<'_>, signals: &Signals, clarity: &Clarity) -> Option<u64> {
+        let is_bounded = motion.bank.near_critical.is_empty();
+        let mut far = 0;
+        for (index, guard) in self.guards.iter().enumerate() {
+            match guard.start {
+                Start::Apart => {
+                    let reach = motion.blocks[0].amplitudes(signals.of(guard.signal).phases[0]).sum();
+                    let least = guard.kept_clear(clarity, reach);
+                    let is_far = is_bounded && is_never_reached(guard.parabola, reach + least, guard.margin(clarity));
+                    far |= u64::from(is_far) << index;
+                }
+                Start::Touching { order: 1, slope } if slope > 0.0 => {}
+                Start::Touching { .. } => return None,
+            }
+        }
+        Some(far)
+    }
+}
+
+impl<'a> Piece<'a> {
+    /// A guard over the cell that begins at an instant, with the transfer up to there.
+    #[inline(always)]
+    fn of(
+        motion: Motion<'_>,
+        cells: &'a Cells,
+        guard: &Guard,
+        signals: &Signals,
+        (now, transfer): (f64, &Transfer),
+    ) -> Self {
+        let (watched, length, sign) = (signals.of(guard.signal), cells.length, guard.sign);
+        let bent = guard.parabola.p2 * (length * length);
+        let mut shares = watched.phases[0];
+        let (touches, base, size) = match guard.start {
+            Start::Touching { slope, .. } if now == 0.0 => (true, [slope * length, bent, 0.0], 0.0),
+            _ => {
+                let (mut p0, mut p1, mut sum) = (guard.parabola.p0, guard.parabola.p1, watched.sum);
+                if now > 0.0 {
+                    (p0, p1) = (guard.parabola.at(now), guard.parabola.rate(now));
+                    shares = motion.blocks[0].advance(shares, transfer);
+                    (sum.value, sum.rate) = (shares.value.sum(), shares.rate.sum());
+                }
+                (false, [p0 + sign * sum.value, (p1 + sign * sum.rate) * length, bent], p0.abs() + watched.size)
+            }
+        };
+        let shares = Phases { value: shares.value * sign, rate: shares.rate * sign };
+        let tables = cells.tables(touches);
+        let moved = cells.bernstein(tables, shares);
+        let b = std::array::from_fn(|i| moved[i] + base[0] + (FIRST[i] * base[1] + SECOND[i] * base[2]));
+        let size = size + base[0].abs() + base[1].abs() + base[2].abs();
+        Self { tables, shares, base, b, left_out: tables.left_out(shares) + ROUNDINGS * size, touches }
+    }
+
+    #[inline(always)]
+    fn least(&self) -> f64 {
+        let [low, high] = self.b;
+        low.zip(high, |a, b| if b < a { b } else { a }).least()
+    }
+
+    fn coefficients(&self) -> [f64; KEPT] {
+        flat(self.b)
+    }
+
+    /// Whether it may turn back on its way to zero nearer to that than anything before, where it is positive all through.
+    #[inline(always)]
+    fn may_come_near(&self, known: f64) -> bool {
+        if self.touches { !self.rises_then_falls() } else { self.least() < known + self.left_out }
+    }
+
+    /// Whether σ p has a slope that is positive, then negative: its factor p + σ p′ is p with each coefficient times its power.
+    #[inline(always)]
+    fn rises_then_falls(&self) -> bool {
+        let b = self.coefficients();
+        let slope: [f64; KEPT] = std::array::from_fn(|i| b[i] + i as f64 * (b[i] - b[i.saturating_sub(1)]));
+        Signs::of(&slope, 0.0).positive_then_negative()
+    }
+
+    /// Its root, if it has one and no more, and does not turn before if it is a distance.
+    #[inline(always)]
+    fn fall(&self, cells: &Cells, guard: usize, is_distance: bool) -> Option<Fall> {
+        let (b, left_out) = (self.coefficients(), self.left_out);
+        let signs = Signs::of(&b, left_out);
+        if !signs.change_once() || is_distance && if self.touches { !self.rises_then_falls() } else { may_turn(&b) } {
+            return None;
+        }
+        let mut powers = flat(cells.powers(self.tables, self.shares));
+        powers.iter_mut().zip(self.base).for_each(|(power, base)| *power += base);
+        let (guess, slope, step) = root(|x| evaluate(&powers, x), signs.crossing(&b, 0.0), 1.0);
+        let [rest_turns, bend] = self.tables.turning(self.shares);
+        let bend = bend + 2.0 * self.base[2].abs();
+        let steep = -slope - DOUBTFUL_STEP * bend * step;
+        // With slope −s at the root p passes the band within 2R/s, and turns by less than 2R bend/s on the way. Twice that is asked for.
+        let falls = steep > 0.0 && steep * steep > 4.0 * left_out * bend + 2.0 * rest_turns * steep;
+        falls.then_some(Fall { guard, guess, powers, left_out })
+    }
+}
+
+impl Fall {
+    /// Whether the guard is surely positive up to this σ.
+    #[inline(always)]
+    fn comes_after(&self, sigma: f64) -> bool {
+        evaluate(&self.powers, sigma).0 > self.left_out
+    }
+}
+
+#[inline(always)]
+fn flat([low, high]: Cell) -> [f64; KEPT] {
+    let ([a, b, c, d], [e, f, g, h]) = (low.array(), high.array());
+    [a, b, c, d, e, f, g, h]
+}
+
+/// Bernstein coefficients of σ.
+const FIRST: Cell =
+    [Four::new([0.0, 1.0 / 7.0, 2.0 / 7.0, 3.0 / 7.0]), Four::new([4.0 / 7.0, 5.0 / 7.0, 6.0 / 7.0, 1.0])];
+/// Those of σ².
+const SECOND: Cell =
+    [Four::new([0.0, 0.0, 1.0 / 21.0, 3.0 / 21.0]), Four::new([6.0 / 21.0, 10.0 / 21.0, 15.0 / 21.0, 1.0])];
+
+/// Value and slope at x of Σ aⱼ xʲ, by Estrin's scheme.
+#[inline(always)]
+fn evaluate(a: &[f64; KEPT], x: f64) -> (f64, f64) {
+    let (x2, x4) = (x * x, (x * x) * (x * x));
+    let value = (a[0] + a[1] * x) + (a[2] + a[3] * x) * x2 + x4 * ((a[4] + a[5] * x) + (a[6] + a[7] * x) * x2);
+    let slope = (a[1] + 2.0 * a[2] * x)
+        + (3.0 * a[3] + 4.0 * a[4] * x) * x2
+        + x4 * ((5.0 * a[5] + 6.0 * a[6] * x) + 7.0 * a[7] * x2);
+    (value, slope)
+}
