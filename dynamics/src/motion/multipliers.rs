@@ -11,6 +11,9 @@ use crate::contact_state::spectral::piece;
 use crate::error::EngineError;
 use crate::system::HybridSystem;
 
+/// Products of lengths that are as exact as their factors.
+const SAFE: std::ops::Range<f64> = 1e-200..1e200;
+
 /// A Floquet multiplier; both of a complex pair are given as the one above the axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Multiplier {
@@ -52,8 +55,9 @@ impl Fundamental {
 /// The map of a period about the run, in units of the motion.
 pub(crate) struct Period {
     pub(crate) matrix: DMatrix<f64>,
-    /// What its determinant has to be.
+    /// What its determinant has to be, and the logarithm of that.
     contraction: f64,
+    log_contraction: f64,
 }
 
 impl Period {
@@ -63,13 +67,15 @@ impl Period {
         let units: Vec<f64> = (0..size).map(|i| scale.unit(i)).collect();
         let mut columns: Vec<Vec<f64>> =
             (0..size).map(|i| (0..size).map(|k| if i == k { units[i] } else { 0.0 }).collect()).collect();
-        let mut contraction = 1.0;
+        let (mut contraction, mut log_contraction) = (1.0, 0.0);
         for (cycle, step) in cycles.flat_map(|cycle| cycle.steps.iter().map(move |step| (cycle, step))) {
             tangent.carry(cycle, step, &mut columns);
-            contraction *= expected(system, step);
+            let [factor, log] = expected(system, step);
+            contraction *= factor;
+            log_contraction += log;
         }
         let matrix = DMatrix::from_fn(size, size, |i, k| columns[k][i] / units[i]);
-        Self { matrix, contraction }
+        Self { matrix, contraction, log_contraction }
     }
 
     /// All multipliers, largest first.
@@ -95,8 +101,35 @@ impl Period {
     /// |det M − e^(∫ tr) Π ε²|, over the product of the columns' lengths: the most that the determinant could be.
     pub(crate) fn residual(&self) -> f64 {
         let lengths: f64 = self.matrix.column_iter().map(|column| column.norm()).product();
-        let off = (self.matrix.determinant() - self.contraction).abs();
-        if off == 0.0 { 0.0 } else { off / lengths.max(self.contraction) }
+        let determinant = self.matrix.determinant();
+        let most = lengths.max(self.contraction);
+        let off = (determinant - self.contraction).abs();
+        match off {
+            0.0 if most > 0.0 => 0.0,
+            _ if SAFE.contains(&most) && determinant.is_finite() => off / most,
+            _ => self.residual_by_logarithms(),
+        }
+    }
+
+    /// The same where one of the products leaves the range of numbers.
+    fn residual_by_logarithms(&self) -> f64 {
+        // A column that has died out is known to no more than the smallest number.
+        let length = |column: &[f64]| {
+            let most = column.iter().fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
+            let squares = column.iter().fold(0.0, |sum, x| sum + (x / most) * (x / most));
+            libm::log(most) + 0.5 * libm::log(squares.max(1.0))
+        };
+        let size = self.matrix.nrows();
+        let lengths: f64 = self.matrix.as_slice().chunks_exact(size.max(1)).map(length).sum();
+        let most = lengths.max(self.log_contraction);
+        let lu = self.matrix.clone().lu();
+        let (mut sign, mut log) = (lu.p().determinant::<f64>(), 0.0);
+        for i in 0..size {
+            let pivot = lu.u()[(i, i)];
+            log += libm::log(pivot.abs());
+            sign = sign.copysign(sign * pivot);
+        }
+        (sign * libm::exp(log - most) - libm::exp(self.log_contraction - most)).abs()
     }
 
     /// The orbit that closes, as seen from a state that misses itself by `miss` after the period: Newton's step.
@@ -129,20 +162,54 @@ impl Multiplier {
     }
 }
 
-/// The determinant of a step: e^(tr t) of a flow, ε² of an impact, 0 where a face holds a particle.
-fn expected(system: &HybridSystem, step: &Step) -> f64 {
+/// The determinant of a step and its logarithm: e^(tr t) of a flow, ε² of an impact, 0 where a face holds a particle.
+fn expected(system: &HybridSystem, step: &Step) -> [f64; 2] {
     match step {
         Step::Flow(flow, length) => {
             let modes = &flow.modes;
             let holds = modes.contacts.iter().zip(&system.particles).any(|(contact, it)| contact.holds(it));
             let accelerations = modes.accelerations(system);
             let trace: f64 = (0..modes.order).map(|i| accelerations[i][modes.order + i]).sum();
-            if holds { 0.0 } else { libm::exp(trace * length) }
+            if holds { [0.0, f64::NEG_INFINITY] } else { [libm::exp(trace * length), trace * length] }
         }
-        Step::Timed(_) => 1.0,
+        Step::Timed(_) => [1.0, 0.0],
         Step::Event(crossing) => {
             let kicks = crossing.jumps.iter().flat_map(|jump| &jump.kicks);
-            kicks.filter_map(|kick| kick.restitution).map(|restitution| restitution * restitution).product()
+            let factor: f64 =
+                kicks.filter_map(|kick| kick.restitution).map(|restitution| restitution * restitution).product();
+            [factor, libm::log(factor)]
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::Period;
+
+    fn residual(matrix: DMatrix<f64>, log_contraction: f64) -> f64 {
+        Period { matrix, contraction: libm::exp(log_contraction), log_contraction }.residual()
+    }
+
+    #[test]
+    fn a_determinant_beyond_the_range_of_numbers_is_compared_by_its_logarithm() {
+        let turned = |by: f64, scale: f64| {
+            let (sin, cos) = libm::sincos(by);
+            DMatrix::from_row_slice(2, 2, &[cos, -sin, sin, cos]) * scale
+        };
+        for scale in [1e-150, 1e-100, 1e-3, 1.0, 1e100, 1e170] {
+            let log = 2.0 * libm::log(scale);
+            // ln of 1e-300 is known to 1e-13.
+            assert!(residual(turned(0.7, scale), log) < 1e-12, "{scale:e}");
+            // A mirror has the opposite determinant, and half of it is missed by a half.
+            let mirror = turned(0.7, scale) * DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, -1.0]);
+            assert!((residual(mirror, log) - 2.0).abs() < 1e-12, "{scale:e}");
+            assert!((residual(turned(0.7, scale), log - libm::log(2.0)) - 0.5).abs() < 1e-12, "{scale:e}");
+        }
+        // Died out, and held by a face.
+        assert!(residual(turned(0.0, 0.0), -2000.0) < 1e-200);
+        assert_eq!(residual(turned(0.0, 0.0), f64::NEG_INFINITY), 0.0);
+        assert_eq!(residual(turned(0.0, 0.0), libm::log(0.5)), 1.0);
     }
 }
