@@ -223,7 +223,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         self.keep_all(&specials)?;
         if let Some(end) = beyond {
             let ends = [at.share - end, next.share - end];
-            let last = match special::zero(&mut self.path, at, step, ends, |at| Ok(at.share - end)) {
+            let last = match special::zero(&mut self.path, at, [0.0, step], ends, |at| Ok(at.share - end)) {
                 Ok(Some((_, last))) => last,
                 Ok(None) => return Ok(Ok(Next::End(BranchEnd::Range))),
                 Err(error) => return Ok(Err(error)),

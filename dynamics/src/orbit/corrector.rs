@@ -54,6 +54,12 @@ impl At {
         let state = (0..count).map(|i| self.tangent[i] * self.shot.scale.unit(i) / other.scale.unit(i));
         state.chain([self.tangent[count]]).collect()
     }
+
+    /// How far another point is along the tangent.
+    pub(super) fn ahead(&self, other: &Self) -> f64 {
+        let moved = self.shot.scale.miss(&self.shot.start, &other.shot.start).chain([other.share - self.share]);
+        moved.zip(&self.tangent).fold(0.0, |sum, (z, t)| sum + z * t)
+    }
 }
 
 /// What is followed.

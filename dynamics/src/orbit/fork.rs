@@ -12,6 +12,7 @@ use super::corrector::{At, Path};
 use super::newton::size;
 use super::point::BranchError;
 use super::shot::Shot;
+use super::special::{self, MEETS, Stretch};
 use crate::arithmetic::lagrange::{combined, weights};
 use crate::motion::End;
 use crate::system::HybridSystem;
@@ -22,6 +23,14 @@ const PLACES: [f64; 4] = [-3.0, -1.0, 1.0, 3.0];
 const DISTANCE: f64 = 2e-4;
 /// The same, as a part of the step that passes the point.
 const OF_STEP: f64 = 0.05;
+/// The same, as a part of the way to the ends of the stretch.
+const OF_ROOM: f64 = 0.2;
+/// Distances that are tried, each this part of the last one, until a multiplier is so close to 1.
+const FINER: usize = 6;
+const CLOSER: f64 = 0.125;
+const EXACT: f64 = 1e-7;
+/// The change of sign is enclosed to this part of a stretch.
+const LEAST: f64 = 1e-6;
 /// Rounds, until the point lies between the orbits.
 const ROUNDS: usize = 4;
 /// Where the branch turns within this part of a step from the point, it turns there.
@@ -35,13 +44,12 @@ pub(super) enum Fork {
     Joins,
 }
 
-/// The pitchfork between a point and the next, `step` along.
+/// The pitchfork along a stretch.
 pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
     path: &mut Path<F>,
-    from: &At,
-    to: &At,
-    step: f64,
+    stretch: Stretch<'_>,
 ) -> Result<Option<Fork>, BranchError<E>> {
+    let [from, to] = stretch.ends;
     let Some(middle) = crosses(from.determinant, to.determinant) else { return Ok(None) };
     let forwards = |at: &At| at.tangent[at.tangent.len() - 1];
     let turns_there = |turn: f64| (turn - middle).abs() <= TURNS || from.shot.swaps_sides(&to.shot);
@@ -49,8 +57,48 @@ pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
         // A fold in the same step as a graze looks the same; there the motion has no mirror image.
         return Ok(from.shot.has_both_sides().then_some(Fork::Joins));
     }
-    Ok(interpolated(path, from, step * middle, DISTANCE.min(OF_STEP * step))?
-        .map(|(place, at)| Fork::Begins(place, at)))
+    let mut apart = DISTANCE.min(OF_STEP * stretch.length());
+    let mut middle = stretch.place(middle);
+    let mut best: Option<(f64, f64, Box<At>)> = None;
+    for round in 0..FINER {
+        if round == 1 {
+            // The determinant is far from straight next to a graze, beyond which there are no such orbits, or next to another multiplier at 1.
+            let [low, high] = enclosed(path, stretch)?;
+            middle = 0.5 * (low + high);
+            apart = apart.min(OF_ROOM * (middle - stretch.places[0]).min(stretch.places[1] - middle));
+        }
+        if let Some((place, at)) = interpolated(path, stretch.base, middle, apart)? {
+            let off = special::nearest(&at, 1.0)?;
+            if best.as_ref().is_none_or(|(least, ..)| off < *least) {
+                best = Some((off, place, at));
+            }
+            if off <= EXACT {
+                break;
+            }
+        }
+        apart *= CLOSER;
+    }
+    Ok(best.filter(|(off, ..)| *off < MEETS).map(|(_, place, at)| Fork::Begins(place, at)))
+}
+
+/// Places around the change of sign, as close to it as orbits are found.
+fn enclosed<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
+    path: &mut Path<F>,
+    stretch: Stretch<'_>,
+) -> Result<[f64; 2], BranchError<E>> {
+    let [mut low, mut high] = stretch.places;
+    let begin = stretch.ends[0].determinant;
+    let least = LEAST * stretch.length();
+    while high - low > least {
+        let middle = 0.5 * (low + high);
+        match path.correct(stretch.base, middle) {
+            Ok(at) if at.determinant * begin > 0.0 => low = middle,
+            Ok(_) => high = middle,
+            Err(BranchError::Orbit(_)) => break,
+            Err(other) => return Err(other),
+        }
+    }
+    Ok([low, high])
 }
 
 /// Where a number that changes its sign is zero, as a share of the way.

@@ -65,7 +65,7 @@ impl Origin {
         if !(ends[0] < 0.0 && ends[1] >= 0.0) || self.apart(from).min(self.apart(to)) > REACHED * step {
             return Ok(None);
         }
-        let met = special::zero(path, from, step, ends, |at| Ok(self.ahead(at)))?;
+        let met = special::zero(path, from, [0.0, step], ends, |at| Ok(self.ahead(at)))?;
         Ok(met.filter(|(_, at)| self.apart(at) <= SAME))
     }
 

@@ -14,6 +14,14 @@ const EVALUATIONS: usize = 60;
 const NARROW: f64 = 1e-4;
 /// Shares of the range that are one.
 const LOCATED: f64 = 1e-13;
+/// A multiplier is at 1 or −1 within this; two that meet there are known to the root of rounding.
+pub(super) const MEETS: f64 = 1e-4;
+/// A special point of one kind is the same one within this share of a step.
+const SAME: f64 = 1e-6;
+/// Halvings of a step in which a special point hides.
+const HALVINGS: usize = 40;
+/// Where a stretch is divided: elsewhere, if there is no orbit, or one whose stability is unsure.
+const MIDDLES: [f64; 5] = [0.5, 0.4, 0.6, 0.2, 0.05];
 /// A pair that has become complex away from the unit circle has not crossed it.
 const CROSSES: f64 = 1e-6;
 
@@ -37,6 +45,21 @@ impl Test {
             Self::Torus(pair) => pairs(&multipliers(at)?).get(pair).map_or(-1.0, |modulus| modulus - 1.0),
         })
     }
+
+    /// A multiplier is where it has to be. Where the motion is not smooth, the function jumps over zero.
+    fn is_met<E>(self, at: &At) -> Result<bool, BranchError<E>> {
+        let has = |real: f64| Ok(nearest(at, real)? < MEETS);
+        match self {
+            Self::Fold => has(1.0),
+            Self::PeriodDoubling => has(-1.0),
+            Self::Torus(_) => Ok(self.value(at)?.abs() < CROSSES),
+        }
+    }
+}
+
+/// How far the multiplier next to a real number is from it.
+pub(super) fn nearest<E>(at: &At, real: f64) -> Result<f64, BranchError<E>> {
+    Ok(multipliers(at)?.iter().fold(f64::INFINITY, |least, it| least.min(away(it, real))))
 }
 
 fn multipliers<E>(at: &At) -> Result<Vec<Multiplier>, BranchError<E>> {
@@ -49,6 +72,32 @@ fn pairs(multipliers: &[Multiplier]) -> Vec<f64> {
     complex.step_by(2).map(|it| it.modulus).collect()
 }
 
+/// Part of a step along a branch: the points at its ends, and their places along the tangent of the point that those between them are
+/// predicted from.
+#[derive(Clone, Copy)]
+pub(super) struct Stretch<'a> {
+    pub(super) base: &'a At,
+    /// Of that point along the step.
+    from: f64,
+    pub(super) places: [f64; 2],
+    pub(super) ends: [&'a At; 2],
+}
+
+impl<'a> Stretch<'a> {
+    /// A whole step.
+    pub(super) fn whole(from: &'a At, to: &'a At, step: f64) -> Self {
+        Self { base: from, from: 0.0, places: [0.0, step], ends: [from, to] }
+    }
+
+    pub(super) fn length(&self) -> f64 {
+        self.places[1] - self.places[0]
+    }
+
+    pub(super) fn place(&self, share: f64) -> f64 {
+        self.places[0] + self.length() * share
+    }
+}
+
 /// What is between a point and the next.
 pub(super) enum Between {
     /// Special points in their order.
@@ -57,6 +106,9 @@ pub(super) enum Between {
     Symmetry,
 }
 
+/// Special points with their places along a step; `None` where the motion has lost its asymmetry.
+type Found = Option<Vec<(f64, Special, At)>>;
+
 /// The special points between a point and the next, `step` along.
 pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
     path: &mut Path<F>,
@@ -64,20 +116,51 @@ pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
     to: &At,
     step: f64,
 ) -> Result<Between, BranchError<E>> {
+    let whole = Stretch::whole(from, to, step);
+    let Some(mut found) = watched(path, whole)? else { return Ok(Between::Symmetry) };
+    let outside = [Outside::of(from)?, Outside::of(to)?];
+    if !explained(outside, &found)? {
+        // Two changes in one step hide each other, and one next to a graze is hidden by multipliers without bound.
+        let mut finer = Vec::new();
+        refined(path, whole, outside, HALVINGS, &mut finer)?;
+        let is_new =
+            |new: &(f64, Special, At)| !found.iter().any(|old| old.1 == new.1 && (old.0 - new.0).abs() <= SAME * step);
+        if explained(outside, &finer)? {
+            let (new, again): (Vec<_>, Vec<_>) = finer.into_iter().partition(is_new);
+            found.retain(|old| again.iter().any(|new| old.1 == new.1 && (old.0 - new.0).abs() <= SAME * step));
+            found.extend(new);
+        } else if finer.len() > found.len() {
+            found = finer;
+        }
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(Between::Specials(found.into_iter().map(|(_, special, at)| (special, at)).collect()))
+}
+
+/// Zeros of the test functions whose sign changes along a stretch.
+fn watched<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
+    path: &mut Path<F>,
+    stretch: Stretch<'_>,
+) -> Result<Found, BranchError<E>> {
     // A branch that ends here turns here, too, and orbits next to that place are hard to find.
     let mut found = Vec::new();
-    match fork::between(path, from, to, step)? {
+    match fork::between(path, stretch)? {
         Some(Fork::Begins(place, at)) => {
             let period = path.system(at.share)?.drive.period;
             let mirrored = at.shot.comes_upside_down(period);
-            found.push((place, if mirrored { Special::SymmetryBreaking } else { Special::BranchPoint }, *at));
+            found.push((
+                stretch.from + place,
+                if mirrored { Special::SymmetryBreaking } else { Special::BranchPoint },
+                *at,
+            ));
         }
-        Some(Fork::Joins) => return Ok(Between::Symmetry),
+        Some(Fork::Joins) => return Ok(None),
         None => {}
     }
     let outside = |at: &At| -> Result<usize, BranchError<E>> {
         Ok(pairs(&multipliers(at)?).iter().filter(|modulus| **modulus > 1.0 + NEUTRAL).count())
     };
+    let [from, to] = stretch.ends;
     let mut tests = vec![(Test::Fold, Special::Fold), (Test::PeriodDoubling, Special::PeriodDoubling)];
     let (before, after) = (outside(from)?, outside(to)?);
     if before != after {
@@ -86,14 +169,125 @@ pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
     for (test, special) in tests {
         let ends = [test.value(from)?, test.value(to)?];
         if ends[0] * ends[1] < 0.0
-            && let Some((place, at)) = zero(path, from, step, ends, |at| test.value(at))?
-            && (!matches!(test, Test::Torus(_)) || test.value(&at)?.abs() < CROSSES)
+            && let Some((place, at)) = zero(path, stretch.base, stretch.places, ends, |at| test.value(at))?
+            && test.is_met(&at)?
         {
-            found.push((place, special, at));
+            found.push((stretch.from + place, special, at));
         }
     }
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Ok(Between::Specials(found.into_iter().map(|(_, special, at)| (special, at)).collect()))
+    Ok(Some(found))
+}
+
+/// Multipliers outside the unit circle.
+#[derive(Clone, Copy)]
+struct Outside {
+    /// Above 1.
+    above: usize,
+    /// Below −1.
+    below: usize,
+    all: usize,
+    /// One is so close to the circle that rounding decides on which side.
+    unsure: bool,
+}
+
+impl Outside {
+    fn of<E>(at: &At) -> Result<Self, BranchError<E>> {
+        let multipliers = multipliers(at)?;
+        let outside = || multipliers.iter().filter(|it| it.modulus > 1.0);
+        Ok(Self {
+            above: outside().filter(|it| it.angle == 0.0).count(),
+            below: outside().filter(|it| it.angle == std::f64::consts::PI).count(),
+            all: outside().count(),
+            unsure: multipliers.iter().any(|it| (it.modulus - 1.0).abs() <= CROSSES),
+        })
+    }
+}
+
+/// The special points account for the multipliers that are outside the unit circle before and after them: each has its own number of
+/// others outside, which those before and after it differ from by the critical ones. Real ones become complex, and the other way round,
+/// two at a time.
+fn explained<E>([before, after]: [Outside; 2], found: &[(f64, Special, At)]) -> Result<bool, BranchError<E>> {
+    if before.unsure || after.unsure {
+        return Ok(true);
+    }
+    let mut in_order: Vec<&(f64, Special, At)> = found.iter().collect();
+    in_order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (mut all, mut above, mut below) = (before.all, before.above, before.below);
+    for (_, special, at) in in_order {
+        let (critical, real) = match special {
+            Special::Torus => (2, None),
+            Special::PeriodDoubling => (1, Some(-1.0)),
+            _ => (1, Some(1.0)),
+        };
+        let mut multipliers = multipliers(at)?;
+        let off = |it: &Multiplier| real.map_or_else(|| off_circle(it), |real| away(it, real));
+        multipliers.sort_by(|a, b| off(a).total_cmp(&off(b)));
+        let others = multipliers.iter().skip(critical).filter(|it| it.modulus > 1.0).count();
+        all = match all {
+            _ if all == others => others + critical,
+            _ if all == others + critical => others,
+            _ => return Ok(false),
+        };
+        above += usize::from(real == Some(1.0));
+        below += usize::from(real == Some(-1.0));
+    }
+    Ok(all == after.all && (above + after.above).is_multiple_of(2) && (below + after.below).is_multiple_of(2))
+}
+
+/// From a number on the real axis.
+fn away(it: &Multiplier, real: f64) -> f64 {
+    let (sin, cos) = libm::sincos(it.angle);
+    libm::hypot(it.modulus * cos - real, it.modulus * sin)
+}
+
+/// Of a complex one, from the unit circle.
+fn off_circle(it: &Multiplier) -> f64 {
+    if it.angle > 0.0 && it.angle < std::f64::consts::PI { (it.modulus - 1.0).abs() } else { f64::INFINITY }
+}
+
+/// The special points of a stretch, halved where those found do not account for its multipliers.
+fn refined<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
+    path: &mut Path<F>,
+    stretch: Stretch<'_>,
+    outside: [Outside; 2],
+    halvings: usize,
+    found: &mut Vec<(f64, Special, At)>,
+) -> Result<(), BranchError<E>> {
+    let here = match watched(path, stretch) {
+        Ok(here) => here.unwrap_or_default(),
+        Err(BranchError::Orbit(_)) => Vec::new(),
+        Err(other) => return Err(other),
+    };
+    if halvings == 0 || explained(outside, &here)? {
+        found.extend(here);
+        return Ok(());
+    }
+    for share in MIDDLES {
+        let place = stretch.place(share);
+        let middle = match path.correct(stretch.base, place) {
+            Ok(at) if at.shot.contacts() == stretch.base.shot.contacts() => at,
+            Ok(_) | Err(BranchError::Orbit(_)) => continue,
+            Err(other) => return Err(other),
+        };
+        let between = Outside::of(&middle)?;
+        if between.unsure {
+            continue;
+        }
+        let [low, high] = stretch.places;
+        let [from, to] = stretch.ends;
+        let first = Stretch { places: [low, place], ends: [from, &middle], ..stretch };
+        // Orbits next to a fork are found from close by.
+        let arc = middle.ahead(to);
+        let second = if arc > 0.0 {
+            Stretch { base: &middle, from: stretch.from + place, places: [0.0, arc], ends: [&middle, to] }
+        } else {
+            Stretch { places: [place, high], ends: [&middle, to], ..stretch }
+        };
+        refined(path, first, [outside[0], between], halvings - 1, found)?;
+        return refined(path, second, [between, outside[1]], halvings - 1, found);
+    }
+    found.extend(here);
+    Ok(())
 }
 
 /// Where a function of the points of a branch vanishes between two of them, by regula falsi (Illinois); an error where points in between
@@ -101,11 +295,12 @@ pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
 pub(super) fn zero<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
     path: &mut Path<F>,
     from: &At,
-    step: f64,
+    places: [f64; 2],
     ends: [f64; 2],
     value: impl Fn(&At) -> Result<f64, BranchError<E>>,
 ) -> Result<Option<(f64, At)>, BranchError<E>> {
-    let [mut low, mut high] = [(0.0, ends[0]), (step, ends[1])];
+    let [mut low, mut high] = [(places[0], ends[0]), (places[1], ends[1])];
+    let step = places[1] - places[0];
     let mut best: Option<(f64, f64, At)> = None;
     for i in 0..EVALUATIONS {
         let chord = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);

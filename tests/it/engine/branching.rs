@@ -380,3 +380,58 @@ fn special_points_do_not_depend_on_the_length_of_steps() {
         }
     }
 }
+
+/// One mass with a particle between rigid walls, shaken at so many times its own frequency.
+fn shaken(ratio: f64, particle: f64, gap: f64, damping_ratio: f64) -> impl Fn(f64) -> Result<HybridSystem, Infallible> {
+    let natural = 1000.0_f64.sqrt();
+    move |force| {
+        let mass = base(1.0, 1000.0, 2.0 * damping_ratio * natural);
+        let drive = Excitation::Harmonic { force, angular_frequency: ratio * natural };
+        Ok(system(&scene(mass, 0.0, damper(particle, gap, rigid(0.5)), drive)))
+    }
+}
+
+/// The orbit that a run of so many cycles from rest ends in.
+fn settled(system: &HybridSystem, cycles: u32) -> Orbit {
+    Orbit::after(system, &Options { skip: cycles - 100, average: 100, ..Options::default() }).expect("it settles")
+}
+
+#[test]
+fn a_loss_of_symmetry_behind_a_complex_pair_is_found_whatever_the_step() {
+    // A pair leaves the unit circle at 40.184 N, becomes real at 40.249 N, and one of the two comes back through 1 at once.
+    let systems = shaken(1.3, 0.2, 0.05, 0.05);
+    let orbit = settled(&systems(40.0).expect("it compiles"), 500);
+    assert_eq!((orbit.cycles, orbit.contacts, orbit.is_stable()), (3, 8, true));
+    let found = [0.002, 0.008, 0.01, 0.05].map(|step| {
+        let along = Along { from: 5.0, to: 60.0, step, points: 14 };
+        let branch = Branch::follow(&systems, &orbit, 40.0, along).expect("it has a first orbit");
+        let [torus] = special(&branch, Special::Torus)[..] else { panic!("one torus with steps of {step}") };
+        let [fork] = special(&branch, Special::SymmetryBreaking)[..] else { panic!("one fork with steps of {step}") };
+        within("multiplier", fork.orbit.multipliers[1].modulus, 1.0, 1e-8);
+        assert!(torus.parameter < fork.parameter && fork.orbit.multipliers[0].modulus > 1.03);
+        for point in branch.points.iter().filter(|point| point.special.is_none()) {
+            let outside = point.orbit.multipliers.iter().filter(|it| it.modulus > 1.0).count();
+            let expected = if point.parameter < torus.parameter {
+                0
+            } else if point.parameter < fork.parameter {
+                2
+            } else {
+                1
+            };
+            assert_eq!(outside, expected, "at {} N", point.parameter);
+        }
+        // Two motions begin there, with the harder blows on the one wall or on the other.
+        let both = Branch::asymmetric(&systems, fork, Along { points: 4, ..along }).expect("they begin there");
+        let harder = both.map(|branch| {
+            let events = &branch.points.last().expect("it has points").orbit.response.events;
+            let contacts = events.iter().filter(|event| event.kind.is_contact());
+            contacts.fold(0.0, |sum, event| sum + event.approach * event.approach.abs())
+        });
+        assert!(harder[0] * harder[1] < 0.0, "{harder:?}");
+        [torus.parameter, fork.parameter]
+    });
+    for [torus, fork] in found {
+        close("torus", torus, found[0][0], 1e-10);
+        close("fork", fork, found[0][1], 1e-10);
+    }
+}

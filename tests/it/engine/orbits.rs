@@ -612,3 +612,25 @@ fn a_branch_says_what_is_in_its_way_and_keeps_what_it_has() {
     let few = Branch::follow(systems, &orbit, begin, Along { points: 4, ..along }).expect("it has a first orbit");
     assert_eq!((few.points.len(), few.end), (4, BranchEnd::Points));
 }
+
+#[test]
+fn where_a_contact_comes_to_the_impulse_no_multiplier_passes_minus_one() {
+    // The map jumps there, and with it the determinants that are zero at special points.
+    let orbit = Orbit::after(&under_impulses(2.2), &Options::default()).expect("it settles");
+    let branch = follow(under_impulses, &orbit, [2.2, 8.0], 200);
+    assert_eq!(branch.end, BranchEnd::CycleStart);
+    for point in &branch.points {
+        let at = |real: f64| {
+            let off = point.orbit.multipliers.iter().map(|it| {
+                let (sin, cos) = it.angle.sin_cos();
+                (it.modulus * cos - real).hypot(it.modulus * sin)
+            });
+            off.fold(f64::INFINITY, f64::min)
+        };
+        match point.special {
+            Some(Special::PeriodDoubling) => within("multiplier", at(-1.0), 0.0, 1e-6),
+            Some(Special::Fold) => within("multiplier", at(1.0), 0.0, 1e-6),
+            _ => {}
+        }
+    }
+}
