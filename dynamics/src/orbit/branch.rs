@@ -170,6 +170,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
                 Ok(Next::At(next)) => {
                     self.slowing.watch(&next.shot, next.share);
                     at = *next;
+                    self.origin.iter_mut().for_each(Origin::leave);
                     step = (GROWTH * tried).min(self.along.step);
                     if let Some(share) = self.slowing.graze(&at.shot) {
                         let parameter = self.path.parameter(share);

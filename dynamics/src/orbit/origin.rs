@@ -25,12 +25,20 @@ pub(super) struct Origin {
     start: End,
     scale: Scale,
     tangent: Vec<f64>,
+    /// The branch has gone on from it; before, rounding decides on which side of it a point is.
+    left: bool,
 }
 
 impl Origin {
     pub(super) fn of(at: &At) -> Self {
         let At { share, shot, tangent, .. } = at;
-        Self { share: *share, start: shot.start.clone(), scale: shot.scale.clone(), tangent: tangent.clone() }
+        let (start, scale, tangent) = (shot.start.clone(), shot.scale.clone(), tangent.clone());
+        Self { share: *share, start, scale, tangent, left: false }
+    }
+
+    /// The branch goes on.
+    pub(super) fn leave(&mut self) {
+        self.left = true;
     }
 
     /// The same with a period that begins elsewhere; `None` where it is not found there, and of a branch that begins at a fork, and ends
@@ -50,7 +58,7 @@ impl Origin {
         let mut onwards = vec![0.0; self.tangent.len()];
         onwards[shot.miss.len()] = along;
         let tangent = path.tangent(&shot, self.share, &onwards).ok()?.x;
-        Some(Self { share: self.share, start: shot.start, scale: shot.scale, tangent })
+        Some(Self { share: self.share, start: shot.start, scale: shot.scale, tangent, left: self.left })
     }
 
     /// The first point again, if the branch has come to it between a point and the next, `step` along; and how far along.
@@ -61,6 +69,9 @@ impl Origin {
         to: &At,
         step: f64,
     ) -> Result<Option<(f64, At)>, BranchError<E>> {
+        if !self.left {
+            return Ok(None);
+        }
         let ends = [self.ahead(from), self.ahead(to)];
         if !(ends[0] < 0.0 && ends[1] >= 0.0) || self.apart(from).min(self.apart(to)) > REACHED * step {
             return Ok(None);

@@ -435,3 +435,16 @@ fn a_loss_of_symmetry_behind_a_complex_pair_is_found_whatever_the_step() {
         close("fork", fork, found[0][1], 1e-10);
     }
 }
+
+#[test]
+fn a_branch_is_not_closed_by_its_own_first_step() {
+    // The period begins away from contacts, where rounding moves the first point by less than can be told.
+    let systems = shaken(0.8, 0.05, 0.1, 0.02);
+    let orbit = settled(&systems(20.0).expect("it compiles"), 500);
+    assert_eq!((orbit.cycles, orbit.contacts), (2, 5));
+    let along = Along { from: 5.0, to: 60.0, step: 0.01, points: 100 };
+    let branch = Branch::follow(&systems, &orbit, 20.0, along).expect("it has a first orbit");
+    assert!(matches!(branch.end, BranchEnd::Graze { .. }), "{:?}", branch.end);
+    let [doubling] = special(&branch, Special::PeriodDoubling)[..] else { panic!("it doubles its period once") };
+    within("multiplier", doubling.orbit.multipliers[0].modulus, 1.0, 1e-9);
+}
