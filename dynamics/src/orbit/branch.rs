@@ -1,7 +1,7 @@
 //! A branch of periodic motions: from point to point, with its special points, until it ends.
 
 use super::corrector::{At, Path};
-use super::newton::closed;
+use super::newton::{CLOSED, closed};
 use super::origin::Origin;
 use super::point::{Along, BranchEnd, BranchError, BranchPoint, Special};
 use super::shot::Shot;
@@ -9,6 +9,8 @@ use super::slowing::{GRAZES, Slowing};
 use super::special::{self, Between};
 use super::{Orbit, OrbitError};
 use crate::arithmetic::matrix::{dot, length};
+use crate::error::EngineError;
+use crate::motion::Multiplier;
 use crate::system::HybridSystem;
 
 /// A step below this share of the longest leads nowhere.
@@ -194,6 +196,11 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         let end = match otherwise {
             _ if at.shot.margin() <= TOUCHES => BranchEnd::Graze { parameter },
             _ if at.shot.meets_its_ends(period) => BranchEnd::CycleStart,
+            BranchEnd::Orbit(OrbitError::Engine(EngineError::Overrun(overrun))) => {
+                BranchEnd::Orbit(OrbitError::Engine(EngineError::Overrun(overrun)))
+            }
+            // No step closes when rounding grows above that by itself.
+            BranchEnd::Orbit(_) if at.shot.map.multipliers().is_ok_and(is_sensitive) => BranchEnd::Sensitive,
             otherwise => otherwise,
         };
         self.end(at, end)
@@ -361,6 +368,11 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         let left = self.slowing.left(at.tangent[at.tangent.len() - 1]);
         left.map_or(step, |left| step.min((TOWARDS * left).max(SHORTEST * self.along.step)))
     }
+}
+
+/// In a period, rounding grows above what an orbit closes to.
+fn is_sensitive(multipliers: Vec<Multiplier>) -> bool {
+    multipliers.first().is_some_and(|largest| f64::EPSILON * largest.modulus > CLOSED)
 }
 
 /// Cosine of the angle between the tangents of two points.

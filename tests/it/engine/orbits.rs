@@ -634,3 +634,18 @@ fn where_a_contact_comes_to_the_impulse_no_multiplier_passes_minus_one() {
         }
     }
 }
+
+#[test]
+fn a_motion_amid_chaos_that_multiplies_rounding_beyond_its_own_closure_is_called_too_sensitive() {
+    let system = under_impulses(0.679);
+    let run = Options { skip: 300, average: 100, ..Options::default() };
+    let orbit = Orbit::beside(&system, &run, 32).expect("it closes");
+    assert_eq!(orbit.cycles, 32);
+    let grown = f64::EPSILON * orbit.multipliers[0].modulus;
+    assert!(grown > 1e-12 && orbit.distance <= 1e-12, "{grown:e} {:e}", orbit.distance);
+    let branch = follow(under_impulses, &orbit, [0.679, 0.8], 50);
+    assert_eq!((branch.end, branch.points[0].parameter), (BranchEnd::Sensitive, 0.679));
+    // One cycle of the same drive is nothing of the kind.
+    let single = Orbit::after(&under_impulses(2.2), &run).expect("it settles");
+    assert!(single.is_stable());
+}
