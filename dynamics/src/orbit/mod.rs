@@ -140,6 +140,22 @@ pub enum OrbitError {
         /// In units of the motion.
         miss: f64,
     },
+    /// It comes again to rounding, and so do others beside it.
+    #[error(
+        "a state comes again after {cycles} cycles to rounding, but so do others beside it: a multiplier is so close to 1 that no single orbit is found"
+    )]
+    NotAlone {
+        /// Cycles of the orbit looked for.
+        cycles: u32,
+    },
+    /// It comes again, and no orbit is found that it goes over into.
+    #[error(
+        "the motion of {cycles} cycles comes again, but no other is found close beside it: it does not change smoothly with the parameter here"
+    )]
+    NoNeighbour {
+        /// Cycles of the orbit.
+        cycles: u32,
+    },
     /// A contact comes and goes between one step and the next.
     #[error(
         "the orbit of {cycles} cycles grazes: between steps that miss it by {miss:.1e} of the motion its sequence of contacts changes"

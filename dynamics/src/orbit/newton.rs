@@ -1,6 +1,6 @@
 //! One orbit: Newton's method from a state next to it.
 
-use super::shot::{Shot, absolute};
+use super::shot::{self, Shot, absolute};
 use super::{Orbit, OrbitError};
 use crate::budget;
 use crate::march;
@@ -136,7 +136,11 @@ pub(super) fn closed(system: &HybridSystem, start: End, cycles: u32) -> Result<(
     if changed > MOST_RUNS / 10 {
         return Err(OrbitError::Grazes { cycles, miss: best });
     }
-    Err(OrbitError::NoConvergence { cycles, miss: best })
+    Err(if best <= shot::ROUNDING {
+        OrbitError::NotAlone { cycles }
+    } else {
+        OrbitError::NoConvergence { cycles, miss: best }
+    })
 }
 
 /// The largest part of a step.

@@ -31,6 +31,9 @@ const FAR: f64 = 1e3;
 /// Two states of a period are the same within this, in units of the motion.
 const SAME: f64 = 1e-9;
 
+/// A state that misses itself by less comes again, in units of the motion.
+pub(super) const ROUNDING: f64 = 1e-11;
+
 /// Instants that are one, as a share of a cycle.
 const COINCIDES: f64 = 1e-6;
 
@@ -86,9 +89,10 @@ impl Shot {
         self.scale.apart(&self.start, self.end())
     }
 
-    /// It leads to no orbit.
+    /// It leads to no orbit, or is one that leads to no other.
     pub(super) fn unsolved(&self) -> OrbitError {
-        OrbitError::NoConvergence { cycles: self.tape.ends.len() as u32, miss: self.misses_by() }
+        let (cycles, miss) = (self.tape.ends.len() as u32, self.misses_by());
+        if miss <= ROUNDING { OrbitError::NoNeighbour { cycles } } else { OrbitError::NoConvergence { cycles, miss } }
     }
 
     /// Cycles after which an orbit comes again for the first time.

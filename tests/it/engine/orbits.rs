@@ -649,3 +649,20 @@ fn a_motion_amid_chaos_that_multiplies_rounding_beyond_its_own_closure_is_called
     let single = Orbit::after(&under_impulses(2.2), &run).expect("it settles");
     assert!(single.is_stable());
 }
+
+#[test]
+fn a_branch_of_completed_chatter_does_not_end_because_its_motion_fails_to_come_again() {
+    let natural = 1000.0_f64.sqrt();
+    let systems = |force: f64| {
+        let drive = Excitation::Harmonic { force, angular_frequency: 0.7 * natural };
+        let mass = base(1.0, 1000.0, 0.04 * natural);
+        system(&scene(mass, 0.0, damper(0.05, 0.02, rigid(0.5)), drive))
+    };
+    let run = Options { skip: 400, average: 100, ..Options::default() };
+    let orbit = Orbit::after(&systems(29.1), &run).expect("it settles");
+    assert_eq!(orbit.kind.to_string(), "completed chatter 1:∞");
+    let branch = follow(systems, &orbit, [29.1, 28.0], 60);
+    // Its impacts grow in number without bound as the last of them cease to be held.
+    assert_eq!(branch.end, BranchEnd::Orbit(OrbitError::NoNeighbour { cycles: 1 }));
+    assert!(branch.points.iter().all(|point| point.orbit.is_stable() && point.special.is_none()));
+}
