@@ -259,3 +259,61 @@ const CHEBYSHEV_BY_BERNSTEIN: [[f64; KEPT]; KEPT] = {
     }
     rows
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_cell_leaves_out_stays_within_its_bounds_for_every_kind_of_block() {
+        // Light and heavy damping, critical but for a rounding, a drift, a creep and one exponential alone, each with a fast neighbour.
+        let matrices = [
+            [0.0, 1.0, -900.0, -3.0],
+            [0.0, 1.0, -9.0, -40.0],
+            [0.0, 1.0, -100.0, -20.0 * (1.0 + f64::EPSILON)],
+            [0.0, 1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0, -7.0],
+            [-12.0, 0.0, 0.0, -12.0],
+        ];
+        for own in matrices {
+            let each = [own, [0.0, 1.0, -1600.0, -1.0]].map(Block::new);
+            let bank = Bank::default().of(&each);
+            let cells = Cells::new(&bank, &each, each[0].radius.max(each[1].radius));
+            for (value, rate) in [(1.0, 0.0), (0.0, 30.0), (-0.4, 17.0)] {
+                // One exponential alone knows no other rate.
+                let own_rate = if each[0].is_single() { -each[0].decay * value } else { rate };
+                let shares = Phases {
+                    value: Four::new([value, 0.3 * value, 0.0, 0.0]),
+                    rate: Four::new([own_rate, -rate, 0.0, 0.0]),
+                };
+                let sum = [shares.value.sum(), shares.rate.sum() * cells.length];
+                for divided in [false, true] {
+                    let tables = cells.tables(divided);
+                    let powers: Vec<f64> = cells.powers(tables, shares).iter().flat_map(|four| four.array()).collect();
+                    let bernstein: Vec<f64> =
+                        cells.bernstein(tables, shares).iter().flat_map(|four| four.array()).collect();
+                    let (left_out, [slope, _]) = (tables.left_out(shares), tables.turning(shares));
+                    assert!((powers.iter().sum::<f64>() - bernstein[KEPT - 1]).abs() < left_out);
+                    let scale = shares.value.abs().sum() + shares.rate.abs().sum() * cells.length;
+                    assert!(left_out < 1e-4 * scale, "{own:?}: {left_out}");
+                    let kept = |x: f64| powers.iter().rev().fold(0.0, |sum, a| sum * x + a);
+                    let mut before = None;
+                    for i in 1..=200 {
+                        let x = f64::from(i) / 200.0;
+                        let mut kernels = [Kernels::NONE];
+                        bank.kernels(&each, x * cells.length, &mut kernels);
+                        let moved = bank.blocks[0].advance(shares, &kernels[0].transfer()).value.sum();
+                        let exact = moved - sum[0] - sum[1] * x;
+                        let exact = if divided { exact / x } else { exact };
+                        // The comparison itself rounds, by what is divided.
+                        let rounding = 4.0 * f64::EPSILON * scale / if divided { x } else { 1.0 };
+                        let off = exact - kept(x);
+                        assert!(off.abs() <= left_out + rounding, "{own:?} at {x}: {off:e}, {left_out:e}");
+                        let step = before.replace(off).map_or(0.0, |before: f64| (off - before).abs());
+                        assert!(step <= slope / 200.0 + 4.0 * rounding, "{own:?} at {x}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -11,7 +11,6 @@ use crate::arithmetic::four::Four;
 use crate::contact_state::bank::{Kernels, Phases, Transfer};
 use crate::flow::cells::{Cell, Cells, KEPT, REACH, Tables};
 use crate::flow::signals::Signals;
-use crate::search::polish::SHORT_HOP;
 use crate::search::polynomial::{Signs, may_turn, root};
 use crate::search::survey::Motion;
 use crate::search::window::Start;
@@ -19,6 +18,8 @@ use crate::search::{AFTER, Clarity, Found, Guard, Root, Search, is_never_reached
 
 /// Newton's last step may turn the slope by so many times what it passes over.
 const DOUBTFUL_STEP: f64 = 1.5;
+/// radius·t of a hop that is left to windows: where it begins it has another root that is as near.
+const SHORT: f64 = 0.12;
 /// Roundings of a guard's value.
 const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
 
@@ -72,7 +73,7 @@ impl Search {
                 if ends_later && fall.comes_after((limit - now) / cells.length) {
                     continue;
                 }
-                if later.is_some() || piece.touches && fall.guess * REACH < SHORT_HOP {
+                if later.is_some() || now == 0.0 && fall.guess * REACH < SHORT {
                     return None;
                 }
                 let precedes = first.as_ref().is_some_and(|first| first.guess <= fall.guess);
@@ -82,12 +83,17 @@ impl Search {
                 let window = cells.length;
                 self.trial.resize(1, Kernels::NONE);
                 self.surveys.now = now;
+                let before = *clarity;
                 let time = self.polish(motion, signals, Root { guard, guess, high: 1.0, window }, clarity);
-                if later.is_some_and(|later| !later.comes_after((time * AFTER - now) / window)) {
+                if later.is_some_and(|later| !later.comes_after((time.min(limit) * AFTER - now) / window)) {
                     return None;
                 }
-                std::mem::swap(&mut self.kernels, &mut self.trial);
-                return Some(Found::Event { guard, time });
+                if time <= limit {
+                    std::mem::swap(&mut self.kernels, &mut self.trial);
+                    return Some(Found::Event { guard, time });
+                }
+                // It comes after the limit, if at all.
+                *clarity = before;
             }
             if ends_later {
                 self.kernels.resize(1, Kernels::NONE);

@@ -18,7 +18,7 @@ use crate::search::survey::Motion;
 use crate::search::window::Window;
 
 /// radius·t below which a window polynomial leaves out less than rounding.
-pub(super) const SHORT_HOP: f64 = 0.02;
+const SHORT_HOP: f64 = 0.02;
 /// radius·δ below which the local expansion of a guard, to the seventh, is exact to rounding.
 const NEAR: f64 = 0.03;
 /// radius·δ between the instants that guards are expanded about.
