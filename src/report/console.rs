@@ -37,6 +37,9 @@ pub fn summary<N: AsRef<str>>(experiments: &[(N, &[Judged])]) -> String {
         }
     }
     let tally = Tally::of(judged());
+    if tally.total() == 0 {
+        return text;
+    }
     text += &format!(
         "\n{}: {}; {}.\n",
         counted(tally.total(), "entry", "entries"),

@@ -513,7 +513,7 @@ pub(crate) fn sweeps_are_products_pairs_points_and_unions() {
         "by: [sweep, solver]",
     );
     let low = ["0.1", "0.2", "0.3", "0.4", "0.5"].map(|x| format!("low:force_ratio = {x}"));
-    assert_eq!(description[0], "high:force_ratio = 7, stop_length = 0.005");
+    assert_eq!(description[0], "high:force_ratio = 7, stop_length = 0.005 m");
     assert_eq!(description[1..], low);
     let labels: Vec<_> = experiment.runs().map(|(_, solver)| solver.label()).collect();
     assert_eq!(labels[..2], ["fixed_step_1e-4s", "event_driven"]);
