@@ -35,10 +35,12 @@ impl Margin {
 
     /// `0.57 ± 0.33 mm/s`, `−1.2 ± 3.4 %`.
     fn words(&self) -> String {
+        // Of a strict requirement a number next to zero stands for zero.
+        let value = if self.value == strict(0.0) { 0.0 } else { self.value };
         let wide = COVERAGE * self.u;
         match &self.shown {
-            Shown::Unit(unit) => with_error(self.value, wide, unit),
-            Shown::PercentOf(whole) => percents(self.value / whole.abs(), wide / whole.abs()),
+            Shown::Unit(unit) => with_error(value, wide, unit),
+            Shown::PercentOf(whole) => percents(value / whole.abs(), wide / whole.abs()),
         }
     }
 }

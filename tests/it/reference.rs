@@ -183,6 +183,8 @@ fn a_claim_that_chance_may_decide_shows_the_uncertainty_of_its_difference() {
     assert!(verdict == Verdict::Undecidable && text.ends_with("3.378 ≈ 3.365; margin 0.013 ± 0.14"), "{text}");
     let (verdict, text) = found([3.378, 3.165], 0.05);
     assert!(verdict == Verdict::Reproduced && text.ends_with("3.378 > 3.165; margin 0.21 ± 0.14"), "{text}");
+    let (verdict, text) = found([3.355, 3.355], 0.05);
+    assert!(verdict == Verdict::Undecidable && text.ends_with("3.355 ≈ 3.355; margin 0 ± 0.14"), "{text}");
     // Beyond doubt, the numbers say enough.
     let (verdict, text) = found([3.378, 2.027], 0.05);
     assert!(verdict == Verdict::Reproduced && text.ends_with("3.378 > 2.027"), "{text}");
