@@ -104,11 +104,15 @@ impl Search {
         None
     }
 
-    /// Guards that are further from zero than their signals can move them, one bit each; `None` where one starts as cells do not.
+    /// Guards that are further from zero than their signals can move them, one bit each; `None` where one starts as cells do not, or
+    /// where there are more guards than bits.
     #[inline(always)]
     fn out_of_reach(&self, motion: Motion<'_>, signals: &Signals, clarity: &Clarity) -> Option<u64> {
         let is_bounded = motion.bank.near_critical.is_empty();
-        let mut far = 0;
+        let mut far = 0_u64;
+        if self.guards.len() > u64::BITS as usize {
+            return None;
+        }
         for (index, guard) in self.guards.iter().enumerate() {
             match guard.start {
                 Start::Apart => {

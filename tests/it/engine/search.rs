@@ -12,6 +12,29 @@ use shotdamp::scene::{Damper, Excitation, LimitStop, Scene, Surface};
 use super::arrays::{Dice, cycles};
 use super::bench::{GRAVITY, base, resilient, resilient_without_tension, rigid, system};
 
+#[test]
+pub(super) fn cells_and_windows_decide_the_same_events() {
+    // Windows half as long are asked alone; of forty particles more guards are set than cells take.
+    for count in [1_u32, 2, 3, 40] {
+        let damper = |i: u32| {
+            let mass = 0.05 / f64::from(1 + i);
+            Damper::between(resilient(1000.0, 0.6 * (1000.0 * mass).sqrt()), mass, 0.1 + 0.03 * f64::from(i))
+        };
+        let drive = Excitation::ImpulseTrain { impulse: 1.5, period: 0.199 };
+        let scene = Scene::on_one_mass(base(1.0, 1000.0, 3.0), GRAVITY, (0..count).map(damper).collect(), drive);
+        let events = |window_factor| {
+            let options = Options { window_factor, record_events: usize::MAX, ..cycles(4) };
+            event_driven(&system(&scene), &options).expect("it runs").events
+        };
+        let (by_cells, by_windows) = (events(1.0), events(0.5));
+        assert_eq!(by_cells.len(), by_windows.len(), "{count} particles");
+        for (one, other) in by_cells.iter().zip(&by_windows) {
+            assert_eq!((one.cycle, one.particle, one.kind), (other.cycle, other.particle, other.kind));
+            assert!((one.time - other.time).abs() < 1e-9, "{count} particles: {one:?} for {other:?}");
+        }
+    }
+}
+
 /// A scene of one mass and up to two dampers, by numbers between 0 and 1.
 const GENES: usize = 22;
 
