@@ -188,7 +188,8 @@ impl Economised {
         }
         let largest = |numbers: &[f64]| numbers.iter().fold(0.0_f64, |most, number| most.max(number.abs()));
         let rounding = ROUNDINGS * (largest(&bernstein) + largest(&powers) + largest(taylor));
-        let (mut left_out, mut slope, mut bend) = (rounding, KEPT as f64 * rounding, 0.0_f64);
+        // The slope of eight powers that are each off by as much: 0 + 1 + … + 7 times.
+        let (mut left_out, mut slope, mut bend) = (rounding, 28.0 * rounding, 0.0_f64);
         for (j, c) in chebyshev.iter().enumerate().skip(KEPT) {
             left_out += c.abs();
             slope += 2.0 * (j * j) as f64 * c.abs();

@@ -75,8 +75,8 @@ impl<E: Effects> March<'_, E> {
         }
     }
 
-    /// In so short a segment an observed signal lies so far from where it would rest, and moves so little, that the difference of squares at
-    /// its ends is rounding: of ∫ s′² it is some ε (amplitude·radius)² over the slowest rate.
+    /// In so short a segment the closed form of ∫ s′² is a difference of squares that may be larger than it by far: its rounding is some
+    /// ε (amplitude·radius)² over the slowest rate.
     #[cold]
     fn ends_cancel(&self, length: f64) -> bool {
         let Flow { bank, rows, .. } = &*self.flow;
@@ -84,8 +84,8 @@ impl<E: Effects> March<'_, E> {
             let rate = |c| row.together(c).map(|shares| shares.rate.sum()).sum::<f64>();
             let reach = |(blocks, shares): (&Blocks, Phases)| (blocks.amplitudes(shares) * blocks.radius).sum();
             let reach: f64 = bank.blocks.iter().zip(row.together(&self.c)).map(reach).sum();
-            let least = rate(&self.c).abs().max(rate(&self.c_end).abs());
-            f64::EPSILON * reach * reach > LOST * (least * least) * self.flow.turned_by_the_slowest(length)
+            let fastest = rate(&self.c).abs().max(rate(&self.c_end).abs());
+            f64::EPSILON * reach * reach > LOST * (fastest * fastest) * self.flow.turned_by_the_slowest(length)
         })
     }
 

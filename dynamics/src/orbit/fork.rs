@@ -29,8 +29,8 @@ const OF_ROOM: f64 = 0.2;
 const FINER: usize = 6;
 const CLOSER: f64 = 0.125;
 const EXACT: f64 = 1e-7;
-/// The change of sign is enclosed to this part of a stretch.
-const LEAST: f64 = 1e-6;
+/// Halvings of a stretch until its sign changes within a millionth of it.
+const HALVINGS: u32 = 20;
 /// Rounds, until the point lies between the orbits.
 const ROUNDS: usize = 4;
 /// Where the branch turns within this part of a step from the point, it turns there.
@@ -88,8 +88,7 @@ fn enclosed<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
 ) -> Result<[f64; 2], BranchError<E>> {
     let [mut low, mut high] = stretch.places;
     let begin = stretch.ends[0].determinant;
-    let least = LEAST * stretch.length();
-    while high - low > least {
+    for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
         match path.correct(stretch.base, middle) {
             Ok(at) if at.determinant * begin > 0.0 => low = middle,

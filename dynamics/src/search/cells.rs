@@ -4,20 +4,21 @@
 //! out ([`crate::flow::cells`]). Bernstein coefficients that all exceed R prove it positive. Positive ones, then doubtful ones, then
 //! negative ones prove that p ± R have one root each, by Descartes' rule; and that of g is the only one if p falls so steeply there that
 //! neither its bend over Newton's last step nor what is left out can turn it. Whatever else is seen is left to windows: near misses,
-//! roots at the same time, starts of a higher order, long ways. What a root is to the last digit is not seen in the cell, so that both give
-//! the same bits.
+//! roots at the same time, starts of a higher order, long ways. `polish` finds a root to the last digit from the guard alone, so that both
+//! give the same bits.
 
 use crate::arithmetic::four::Four;
 use crate::contact_state::bank::{Kernels, Phases, Transfer};
 use crate::flow::cells::{Cell, Cells, KEPT, REACH, Tables};
+use crate::flow::parabola::Parabola;
 use crate::flow::signals::Signals;
 use crate::search::polynomial::{Signs, may_turn, root};
 use crate::search::survey::Motion;
 use crate::search::window::Start;
 use crate::search::{AFTER, Clarity, Found, Guard, Root, Search, is_never_reached};
 
-/// Newton's last step may turn the slope by so many times what it passes over.
-const DOUBTFUL_STEP: f64 = 1.5;
+/// The root lies within so many of Newton's last steps from where the slope was taken.
+const DOUBTFUL_STEP: f64 = 2.0;
 /// radius·t of a hop that is left to windows: where it begins it has another root that is as near.
 const SHORT: f64 = 0.12;
 /// Roundings of a guard's value.
@@ -70,6 +71,9 @@ impl Search {
                     continue;
                 }
                 let fall = piece.fall(cells, index, guard.distance)?;
+                if guard.distance && now > 0.0 && piece.rises() {
+                    return None;
+                }
                 if ends_later && fall.comes_after((limit - now) / cells.length) {
                     continue;
                 }
@@ -86,6 +90,7 @@ impl Search {
                 let before = *clarity;
                 let time = self.polish(motion, signals, Root { guard, guess, high: 1.0, window }, clarity);
                 if later.is_some_and(|later| !later.comes_after((time.min(limit) * AFTER - now) / window)) {
+                    *clarity = before;
                     return None;
                 }
                 if time <= limit {
@@ -145,13 +150,15 @@ impl<'a> Piece<'a> {
         let (touches, base, size) = match guard.start {
             Start::Touching { slope, .. } if now == 0.0 => (true, [slope * length, bent, 0.0], 0.0),
             _ => {
-                let (mut p0, mut p1, mut sum) = (guard.parabola.p0, guard.parabola.p1, watched.sum);
+                let Parabola { mut p0, mut p1, p2 } = guard.parabola;
+                let (mut sum, mut size) = (watched.sum, p0.abs() + watched.size);
                 if now > 0.0 {
+                    size += (p1 * now).abs() + (p2 * (now * now)).abs();
                     (p0, p1) = (guard.parabola.at(now), guard.parabola.rate(now));
                     shares = motion.blocks[0].advance(shares, transfer);
                     (sum.value, sum.rate) = (shares.value.sum(), shares.rate.sum());
                 }
-                (false, [p0 + sign * sum.value, (p1 + sign * sum.rate) * length, bent], p0.abs() + watched.size)
+                (false, [p0 + sign * sum.value, (p1 + sign * sum.rate) * length, bent], size)
             }
         };
         let shares = Phases { value: shares.value * sign, rate: shares.rate * sign };
@@ -176,6 +183,13 @@ impl<'a> Piece<'a> {
     #[inline(always)]
     fn may_come_near(&self, known: f64) -> bool {
         if self.touches { !self.rises_then_falls() } else { self.least() < known + self.left_out }
+    }
+
+    /// Whether it begins with a slope that is not negative: where the cell before it ends, it may have come near.
+    #[inline(always)]
+    fn rises(&self) -> bool {
+        let [low, _] = self.b;
+        low.at(1) >= low.at(0)
     }
 
     /// Whether σ p has a slope that is positive, then negative: its factor p + σ p′ is p with each coefficient times its power.
