@@ -117,10 +117,10 @@ pub(super) fn conclude(study: &Study, choice: &Choice, done: Done) -> Result<Exi
     if !done.tables_only {
         take_snapshot(study, published)?;
     }
-    let (all, Done { verb, experiments, restored, .. }) = (chosen.count(), &done);
+    let (all, Done { verb, experiments, restored, tables_only, .. }) = (chosen.count(), done);
     if all > 0 {
         let all = counted(all, "experiment", "experiments");
-        let restored = if *restored == 0 { String::new() } else { format!(", {restored} restored") };
+        let restored = if restored == 0 { String::new() } else { format!(", {restored} restored") };
         let written = format!("{} written", counted(written, "figure or report", "figures and reports"));
         print(&format!("{all}: {experiments} {verb}{restored}; {written}.\n"))?;
     }
@@ -131,11 +131,11 @@ pub(super) fn conclude(study: &Study, choice: &Choice, done: Done) -> Result<Exi
              `shotdamp run` makes all tables, and these pages once every reference can be read.\n"
         ))?;
     }
-    let planned = study.items.iter().map(|item| (item.source.experiment.id.0.as_str(), item.source.folder()));
-    let known = study.known.iter().map(|(id, known)| (id.as_str(), known.folder.as_str()));
-    let folders: BTreeMap<&str, &str> = planned.chain(known).collect();
-    let page = page_to_open(&study.layout, &chosen.ids, |id| folders.get(id).copied());
-    print(&(verdicts_of(&judgement, &chosen.ids) + if done.tables_only { "" } else { &page }))?;
+    let planned =
+        |id| study.items.iter().find(|item| item.source.experiment.id.0 == id).map(|item| item.source.folder());
+    let folder = |id| study.known.get(id).map(|known| known.folder.as_str()).or_else(|| planned(id));
+    let page = if tables_only { String::new() } else { page_to_open(&study.layout, &chosen.ids, folder) };
+    print(&(verdicts_of(&judgement, &chosen.ids) + &page))?;
     Ok(exit)
 }
 

@@ -106,9 +106,9 @@ impl Tally {
 
     /// As [`Tally::require`]; margins are compared in units of `scale`, as a millimetre is much of one number and little of another.
     pub(crate) fn require_in(&mut self, scale: f64, shown: Shown, margin: f64, u: f64, says: impl FnOnce() -> String) {
-        let outcome = if margin >= 2.0 * u {
+        let outcome = if margin >= COVERAGE * u {
             Outcome::Holds
-        } else if margin <= -2.0 * u {
+        } else if margin <= -COVERAGE * u {
             Outcome::Fails
         } else {
             Outcome::Undecided
@@ -133,7 +133,7 @@ impl Tally {
     /// The worst requirement's answer.
     pub(crate) fn decision(self) -> Result<Decision, Absence> {
         let worst = self.worst.ok_or_else(|| Absence::NoRow("nothing to compare: too few points".into()))?;
-        let reach = worst.margin + 2.0 * worst.u;
+        let reach = worst.margin + COVERAGE * worst.u;
         Ok(Decision {
             outcome: worst.outcome,
             found: worst.says,

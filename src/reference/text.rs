@@ -26,8 +26,7 @@ pub(crate) fn percent(fraction: f64) -> String {
 
 /// A fraction and its error as per cent: `−1.2 ± 3.4 %`.
 pub(crate) fn percents(fraction: f64, error: f64) -> String {
-    let (value, error) = number::with_uncertainty(100.0 * fraction, 100.0 * error);
-    format!("{value} ± {error} %")
+    with_error(100.0 * fraction, 100.0 * error, "%")
 }
 
 /// A number and its error with their unit: `0.57 ± 0.33 mm/s`.

@@ -86,7 +86,7 @@ impl Spent {
     /// What a simulation took on average, s; `None` if there was none.
     pub(super) fn each(&self) -> Option<f64> {
         let simulations: u64 = self.0.values().map(|cost| cost.simulations).sum();
-        (simulations > 0).then(|| self.total().map(|total| total / simulations as f64))?
+        (simulations > 0).then_some(self.total()? / simulations as f64)
     }
 
     /// All of it, s; `None` if there is nothing.

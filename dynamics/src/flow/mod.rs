@@ -154,12 +154,14 @@ impl Flow {
         let slowest = blocks[..own].iter().fold(f64::INFINITY, |least, block| block.radius.min(least));
         let series = series.of(&blocks);
         let bank = bank.of(&blocks);
-        let few = bank.blocks.len() == 1 && system.drive.half_cycles.is_none();
+        // Half cycles leave a contact state before its tables pay.
+        let is_visited_often = system.drive.half_cycles.is_none();
+        let few = is_visited_often && bank.blocks.len() == 1;
         let mut flow = Self {
             slowest,
             cells: few.then(|| Box::new(Cells::new(&bank, &blocks, series.pace))),
             bank,
-            steps: system.drive.half_cycles.is_none().then(|| Steps::new(series.pace)),
+            steps: is_visited_often.then(|| Steps::new(series.pace)),
             series,
             propagators: Propagator::of(propagators, &modes.spectral.matrices, &blocks),
             drifts: modes.spectral.drifts(),

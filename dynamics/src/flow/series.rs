@@ -163,18 +163,11 @@ impl Radii {
 }
 
 impl Terms {
-    /// A′ = −b B and B′ = A − 2a B, coefficient by coefficient.
     fn new(block: &Block, pace: f64) -> Self {
         let unit = 1.0 / pace;
-        let (p, q) = (-2.0 * block.decay * unit, -block.determinant * (unit * unit));
-        let (mut value, mut rate) = ([0.0; PADDED], [0.0; PADDED]);
-        (value[0], rate[1]) = (1.0, 1.0);
-        for j in 1..TERMS - 1 {
-            let inverse = 1.0 / (j + 1) as f64;
-            value[j + 1] = q * rate[j] * inverse;
-            rate[j + 1] = (p * rate[j] + value[j]) * inverse;
-        }
-        Self { value, rate: rate.map(|s| s * unit) }
+        let [value, rate] = taylor::<TERMS>(block, unit)
+            .map(|known| std::array::from_fn(|j| known.get(j).copied().unwrap_or_default()));
+        Self { value, rate: rate.map(|s: f64| s * unit) }
     }
 
     #[inline(always)]
@@ -184,6 +177,19 @@ impl Terms {
             sums[i] = sums[i] + (four(&self.value) * share.value + four(&self.rate) * share.rate);
         }
     }
+}
+
+/// Coefficients of (t/unit)ʲ in A and in B/unit: A′ = −b B and B′ = A − 2a B.
+pub(crate) fn taylor<const N: usize>(block: &Block, unit: f64) -> [[f64; N]; 2] {
+    let (p, q) = (-2.0 * block.decay * unit, -block.determinant * (unit * unit));
+    let (mut value, mut rate) = ([0.0; N], [0.0; N]);
+    (value[0], rate[1]) = (1.0, 1.0);
+    for j in 1..N - 1 {
+        let inverse = 1.0 / (j + 1) as f64;
+        value[j + 1] = q * rate[j] * inverse;
+        rate[j + 1] = (p * rate[j] + value[j]) * inverse;
+    }
+    [value, rate]
 }
 
 /// The stretch of time of a window.

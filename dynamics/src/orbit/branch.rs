@@ -196,9 +196,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         let end = match otherwise {
             _ if at.shot.margin() <= TOUCHES => BranchEnd::Graze { parameter },
             _ if at.shot.meets_its_ends(period) => BranchEnd::CycleStart,
-            BranchEnd::Orbit(OrbitError::Engine(EngineError::Overrun(overrun))) => {
-                BranchEnd::Orbit(OrbitError::Engine(EngineError::Overrun(overrun)))
-            }
+            BranchEnd::Orbit(OrbitError::Engine(EngineError::Overrun(_))) => otherwise,
             // No step closes when rounding grows above that by itself.
             BranchEnd::Orbit(_) if at.shot.map.multipliers().is_ok_and(is_sensitive) => BranchEnd::Sensitive,
             otherwise => otherwise,

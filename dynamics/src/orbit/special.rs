@@ -123,11 +123,12 @@ pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
         // Two changes in one step hide each other, and one next to a graze is hidden by multipliers without bound.
         let mut finer = Vec::new();
         refined(path, whole, outside, HALVINGS, &mut finer)?;
-        let is_new =
-            |new: &(f64, Special, At)| !found.iter().any(|old| old.1 == new.1 && (old.0 - new.0).abs() <= SAME * step);
+        let has = |list: &[(f64, Special, At)], one: &(f64, Special, At)| {
+            list.iter().any(|other| other.1 == one.1 && (other.0 - one.0).abs() <= SAME * step)
+        };
         if explained(outside, &finer)? {
-            let (new, again): (Vec<_>, Vec<_>) = finer.into_iter().partition(is_new);
-            found.retain(|old| again.iter().any(|new| old.1 == new.1 && (old.0 - new.0).abs() <= SAME * step));
+            let (again, new): (Vec<_>, Vec<_>) = finer.into_iter().partition(|one| has(&found, one));
+            found.retain(|old| has(&again, old));
             found.extend(new);
         } else if finer.len() > found.len() {
             found = finer;

@@ -12,7 +12,7 @@ use crate::contact_state::bank::{Kernels, Phases, Transfer};
 use crate::flow::cells::{Cell, Cells, KEPT, REACH, Tables};
 use crate::flow::parabola::Parabola;
 use crate::flow::signals::Signals;
-use crate::search::polynomial::{Signs, may_turn, root};
+use crate::search::polynomial::{Signs, evaluate, may_turn, rises_then_falls, root};
 use crate::search::survey::Motion;
 use crate::search::window::Start;
 use crate::search::{AFTER, Clarity, Found, Guard, Root, Search, is_never_reached};
@@ -175,14 +175,10 @@ impl<'a> Piece<'a> {
         low.zip(high, |a, b| if b < a { b } else { a }).least()
     }
 
-    fn coefficients(&self) -> [f64; KEPT] {
-        flat(self.b)
-    }
-
     /// Whether it may turn back on its way to zero nearer to that than anything before, where it is positive all through.
     #[inline(always)]
     fn may_come_near(&self, known: f64) -> bool {
-        if self.touches { !self.rises_then_falls() } else { self.least() < known + self.left_out }
+        if self.touches { !rises_then_falls(&flat(self.b), 1) } else { self.least() < known + self.left_out }
     }
 
     /// Whether it begins with a slope that is not negative: where the cell before it ends, it may have come near.
@@ -192,20 +188,12 @@ impl<'a> Piece<'a> {
         low.at(1) >= low.at(0)
     }
 
-    /// Whether σ p has a slope that is positive, then negative: its factor p + σ p′ is p with each coefficient times its power.
-    #[inline(always)]
-    fn rises_then_falls(&self) -> bool {
-        let b = self.coefficients();
-        let slope: [f64; KEPT] = std::array::from_fn(|i| b[i] + i as f64 * (b[i] - b[i.saturating_sub(1)]));
-        Signs::of(&slope, 0.0).positive_then_negative()
-    }
-
     /// Its root, if it has one and no more, and does not turn before if it is a distance.
     #[inline(always)]
     fn fall(&self, cells: &Cells, guard: usize, is_distance: bool) -> Option<Fall> {
-        let (b, left_out) = (self.coefficients(), self.left_out);
+        let (b, left_out) = (flat(self.b), self.left_out);
         let signs = Signs::of(&b, left_out);
-        if !signs.change_once() || is_distance && if self.touches { !self.rises_then_falls() } else { may_turn(&b) } {
+        if !signs.change_once() || is_distance && if self.touches { !rises_then_falls(&b, 1) } else { may_turn(&b) } {
             return None;
         }
         let mut powers = flat(cells.powers(self.tables, self.shares));
@@ -240,14 +228,3 @@ const FIRST: Cell =
 /// Those of σ².
 const SECOND: Cell =
     [Four::new([0.0, 0.0, 1.0 / 21.0, 3.0 / 21.0]), Four::new([6.0 / 21.0, 10.0 / 21.0, 15.0 / 21.0, 1.0])];
-
-/// Value and slope at x of Σ aⱼ xʲ, by Estrin's scheme.
-#[inline(always)]
-fn evaluate(a: &[f64; KEPT], x: f64) -> (f64, f64) {
-    let (x2, x4) = (x * x, (x * x) * (x * x));
-    let value = (a[0] + a[1] * x) + (a[2] + a[3] * x) * x2 + x4 * ((a[4] + a[5] * x) + (a[6] + a[7] * x) * x2);
-    let slope = (a[1] + 2.0 * a[2] * x)
-        + (3.0 * a[3] + 4.0 * a[4] * x) * x2
-        + x4 * ((5.0 * a[5] + 6.0 * a[6] * x) + 7.0 * a[7] * x2);
-    (value, slope)
-}

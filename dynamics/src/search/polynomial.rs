@@ -1,5 +1,5 @@
-//! Polynomials of windows, of degree eleven on [0, 1]: values, Bernstein coefficients, roots; and the nearest root of an expansion to the
-//! seventh order.
+//! Polynomials on [0, 1], of windows to the eleventh degree and of cells to the seventh: values, Bernstein coefficients, roots; and the nearest
+//! root of an expansion to the seventh order.
 
 use crate::arithmetic::four::Four;
 
@@ -9,17 +9,19 @@ pub(crate) const DEGREE: usize = 11;
 /// Coefficients in powers of σ, or Bernstein coefficients.
 pub(crate) type Coefficients = [f64; DEGREE + 1];
 
-/// Value and slope at x of Σ aⱼ xʲ, by Estrin's scheme.
+/// Value and slope at x of Σ aⱼ xʲ, by Estrin's scheme on four at a time.
 #[inline]
-pub(crate) fn evaluate(a: &Coefficients, x: f64) -> (f64, f64) {
+pub(crate) fn evaluate<const N: usize>(a: &[f64; N], x: f64) -> (f64, f64) {
     let (x2, x4) = (x * x, (x * x) * (x * x));
     let four = |i: usize| (a[i] + a[i + 1] * x) + (a[i + 2] + a[i + 3] * x) * x2;
-    let rate = |i: usize| {
-        let k = i as f64;
-        ((k + 1.0) * a[i + 1] + (k + 2.0) * a[i + 2] * x) + ((k + 3.0) * a[i + 3] + (k + 4.0) * a[i + 4] * x) * x2
-    };
-    let value = four(0) + x4 * (four(4) + x4 * four(8));
-    let slope = rate(0) + x4 * (rate(4) + x4 * ((9.0 * a[9] + 10.0 * a[10] * x) + 11.0 * a[11] * x2));
+    let pair = |j: usize| j as f64 * a[j] + (j + 1) as f64 * a[j + 1] * x;
+    let mut i = N - 4;
+    let (mut value, mut slope) = (four(i), pair(i + 1) + (i + 3) as f64 * a[i + 3] * x2);
+    while i > 0 {
+        i -= 4;
+        value = four(i) + x4 * value;
+        slope = (pair(i + 1) + pair(i + 3) * x2) + x4 * slope;
+    }
     (value, slope)
 }
 
@@ -113,6 +115,14 @@ pub(crate) fn root(evaluate: impl Fn(f64) -> (f64, f64), mut x: f64, high: f64) 
 pub(crate) fn may_turn<const N: usize>(b: &[f64; N]) -> bool {
     let steps: [f64; N] = std::array::from_fn(|i| if i + 1 < N { b[i + 1] - b[i] } else { f64::NEG_INFINITY });
     !Signs::of(&steps, 0.0).positive_then_negative()
+}
+
+/// Whether σ^`order` p has a slope that is positive, then negative: but for a power of σ that is order p + σ p′, p with each coefficient
+/// times its power.
+#[inline(always)]
+pub(crate) fn rises_then_falls<const N: usize>(b: &[f64; N], order: usize) -> bool {
+    let slope: [f64; N] = std::array::from_fn(|i| order as f64 * b[i] + i as f64 * (b[i] - b[i.saturating_sub(1)]));
+    Signs::of(&slope, 0.0).positive_then_negative()
 }
 
 /// Which Bernstein coefficients are surely positive, and which surely negative: one bit each, the first the lowest.

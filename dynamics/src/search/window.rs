@@ -3,7 +3,9 @@
 use crate::arithmetic::four::Four;
 use crate::flow::parabola::Parabola;
 use crate::flow::series::{Bounds, Series, Shares, Span};
-use crate::search::polynomial::{Coefficients, DEGREE, Signs, bernstein, come_first, cut, evaluate, may_turn, root};
+use crate::search::polynomial::{
+    Coefficients, DEGREE, Signs, bernstein, come_first, cut, evaluate, may_turn, rises_then_falls, root,
+};
 
 /// How a guard starts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -132,19 +134,15 @@ impl Window {
         if may_be { self.turns_back(end.min(until), known) } else { None }
     }
 
-    /// The same behind a contact: of σ^order p the slope is σ^(order − 1) (order p + σ p′), whose second factor is p with each
-    /// coefficient times its power. How far it is from zero there, a shorter window tells, for which it lies behind.
+    /// The same behind a contact, where the guard is σ^order p. How far it is from zero there, a shorter window tells, for which it
+    /// lies behind.
     #[inline(always)]
     fn turns_after_contact(&self, order: usize, grown: f64, known: f64) -> Option<NearMiss> {
         let nearest: f64 = (0..order).map(|_| grown.clamp(0.0, 1.0)).product();
         if known < f64::INFINITY && !self.comes_below(self.remainder + known / nearest) {
             return None;
         }
-        let b = &self.b;
-        let slope: Coefficients =
-            std::array::from_fn(|i| order as f64 * b[i] + i as f64 * (b[i] - b[i.saturating_sub(1)]));
-        (!Signs::of(&slope, 0.0).positive_then_negative())
-            .then_some(NearMiss { clearance: f64::INFINITY, is_sharp: false })
+        (!rises_then_falls(&self.b, order)).then_some(NearMiss { clearance: f64::INFINITY, is_sharp: false })
     }
 
     #[inline(always)]
