@@ -6,7 +6,9 @@
 //! A(σD) − 1 = Σⱼ cⱼ T*ⱼ(σ),   |what is left out| ≤ Σ |cⱼ| from the eighth on,
 //!
 //! so that what a guard does in half a turn of the fastest block is known from eight numbers a block: no power, no change of
-//! basis, no exponential. Where a guard starts at zero it is looked at divided by σ, with tables of its own.
+//! basis, no exponential. Where a guard starts at zero it is looked at divided by a power of σ, with tables of its own.
+
+use std::cell::OnceCell;
 
 use crate::arithmetic::four::Four;
 use crate::arithmetic::lanes::WIDTH;
@@ -36,10 +38,10 @@ pub(crate) struct Cells {
     /// From a segment's start to that of each cell.
     pub(crate) transfers: [Transfer; MOST],
     blocks: usize,
-    /// Of A − 1 and B − t.
-    whole: Tables,
-    /// The same over σ.
-    divided: Tables,
+    /// Of A − 1 and B − t, and of both over σ.
+    tables: [Tables; 2],
+    /// What of both is of higher order, over σ² and over σ³; few motions ask for them.
+    higher: OnceCell<Box<[Tables; 2]>>,
 }
 
 /// The shares of all blocks over a cell.
@@ -63,30 +65,27 @@ impl Cells {
             bank.kernels(each, i as f64 * length, &mut kernels);
             *transfer = kernels[0].transfer();
         }
-        let moved = |block| {
-            let [mut value, mut rate] = taylor(block, length);
-            (value[0], rate[1]) = (0.0, 0.0);
-            [value, rate]
-        };
-        let series: Vec<_> = each.iter().map(moved).collect();
         Self {
             length,
             transfers,
             blocks: each.len(),
-            whole: Tables::new(&series, length, 0),
-            divided: Tables::new(&series, length, 1),
+            tables: [0, 1].map(|order| Tables::new(each, length, order)),
+            higher: OnceCell::new(),
         }
     }
 
     /// Numbers that they keep.
     pub(crate) const fn size() -> usize {
-        size_of::<Self>() / size_of::<f64>()
+        (size_of::<Self>() + size_of::<[Tables; 2]>()) / size_of::<f64>()
     }
 
-    /// The tables for a guard that starts at zero, or for one that does not.
+    /// The tables of these blocks for a guard that starts as σ to this power.
     #[inline(always)]
-    pub(crate) fn tables(&self, starts_at_zero: bool) -> &Tables {
-        if starts_at_zero { &self.divided } else { &self.whole }
+    pub(crate) fn tables(&self, each: &[Block], order: usize) -> &Tables {
+        self.tables.get(order).unwrap_or_else(|| {
+            let higher = || Box::new([2, 3].map(|order| Tables::new(each, self.length, order)));
+            &self.higher.get_or_init(higher)[order - 2]
+        })
     }
 
     /// What the shares do beside their values and slopes at the cell's start, in Bernstein's form.
@@ -133,15 +132,18 @@ impl Tables {
         (value.abs() * *by_value + rate.abs() * *by_rate).sum()
     }
 
-    fn new(series: &[[[f64; TERMS]; 2]], length: f64, divided: usize) -> Self {
+    #[cold]
+    fn new(each: &[Block], length: f64, order: usize) -> Self {
         let mut tables = Self {
             bernstein: [[[Four::ZERO; KEPT / WIDTH]; 2]; WIDTH],
             powers: [[[Four::ZERO; KEPT / WIDTH]; 2]; WIDTH],
             bounds: [[Four::ZERO; 2]; 3],
         };
-        for (lane, series) in series.iter().enumerate() {
-            for (i, (series, unit)) in series.iter().zip([1.0, length]).enumerate() {
-                let economised = Economised::new(&series[divided..]);
+        for (lane, block) in each.iter().enumerate() {
+            let [mut value, mut rate] = taylor::<TERMS>(block, length);
+            (value[0], rate[1]) = (0.0, 0.0);
+            for (i, (series, unit)) in [(value, 1.0), (rate, length)].into_iter().enumerate() {
+                let economised = Economised::new(&series[order..]);
                 tables.bernstein[lane][i] = registers(economised.bernstein.map(|b| b * unit));
                 tables.powers[lane][i] = registers(economised.powers.map(|a| a * unit));
                 for (to, bound) in tables.bounds.iter_mut().zip(economised.bounds) {
@@ -279,9 +281,14 @@ mod tests {
                     value: Four::new([value, 0.3 * value, 0.0, 0.0]),
                     rate: Four::new([own_rate, -rate, 0.0, 0.0]),
                 };
-                let sum = [shares.value.sum(), shares.rate.sum() * cells.length];
-                for divided in [false, true] {
-                    let tables = cells.tables(divided);
+                for order in 0..=3 {
+                    // What is known of a guard that starts so: its value, its slope, and its bend.
+                    let mut sum = [shares.value.sum(), shares.rate.sum() * cells.length, 0.0];
+                    if order == 3 {
+                        let bend = bank.blocks[0].acceleration(shares).value.sum();
+                        sum[2] = 0.5 * bend * (cells.length * cells.length);
+                    }
+                    let tables = cells.tables(&each, order);
                     let powers: Vec<f64> = cells.powers(tables, shares).iter().flat_map(|four| four.array()).collect();
                     let bernstein: Vec<f64> =
                         cells.bernstein(tables, shares).iter().flat_map(|four| four.array()).collect();
@@ -296,10 +303,10 @@ mod tests {
                         let mut kernels = [Kernels::NONE];
                         bank.kernels(&each, x * cells.length, &mut kernels);
                         let moved = bank.blocks[0].advance(shares, &kernels[0].transfer()).value.sum();
-                        let exact = moved - sum[0] - sum[1] * x;
-                        let exact = if divided { exact / x } else { exact };
+                        let power = (0..order).map(|_| x).product::<f64>();
+                        let exact = (moved - sum[0] - x * (sum[1] + x * sum[2])) / power;
                         // The comparison itself rounds, by what is divided.
-                        let rounding = 4.0 * f64::EPSILON * scale / if divided { x } else { 1.0 };
+                        let rounding = 4.0 * f64::EPSILON * (scale + sum[2].abs()) / power;
                         let off = exact - kept(x);
                         assert!(off.abs() <= left_out + rounding, "{own:?} at {x}: {off:e}, {left_out:e}");
                         let step = before.replace(off).map_or(0.0, |before: f64| (off - before).abs());

@@ -1,10 +1,10 @@
 //! The first event of a flow of few blocks, by cells: most segments of one mass with its damper are decided by two or three products.
 //!
-//! Over a cell of D seconds a guard g, or g/σ where it starts at zero, is a polynomial p of the seventh degree, and R bounds what that leaves
+//! Over a cell of D seconds a guard g, over σ to the power that it starts with, is a polynomial p of the seventh degree, and R bounds what that leaves
 //! out ([`crate::flow::cells`]). Bernstein coefficients that all exceed R prove it positive. Positive ones, then doubtful ones, then
 //! negative ones prove that p ± R have one root each, by Descartes' rule; and that of g is the only one if p falls so steeply there that
 //! neither its bend over Newton's last step nor what is left out can turn it. Whatever else is seen is left to windows: near misses,
-//! roots at the same time, starts of a higher order, long ways. `polish` finds a root to the last digit from the guard alone, so that both
+//! roots at the same time, long ways. `polish` finds a root to the last digit from the guard alone, so that both
 //! give the same bits.
 
 use crate::arithmetic::four::Four;
@@ -12,7 +12,7 @@ use crate::contact_state::bank::{Kernels, Phases, Transfer};
 use crate::flow::cells::{Cell, Cells, KEPT, REACH, Tables};
 use crate::flow::parabola::Parabola;
 use crate::flow::signals::Signals;
-use crate::search::polynomial::{Signs, evaluate, may_turn, rises_then_falls, root};
+use crate::search::polynomial::{Signs, cut, evaluate, may_turn, rises_then_falls, root};
 use crate::search::survey::Motion;
 use crate::search::window::Start;
 use crate::search::{AFTER, Clarity, Found, Guard, Root, Search, is_never_reached};
@@ -21,10 +21,14 @@ use crate::search::{AFTER, Clarity, Found, Guard, Root, Search, is_never_reached
 const DOUBTFUL_STEP: f64 = 2.0;
 /// radius·t of a hop that is left to windows: where it begins it has another root that is as near.
 const SHORT: f64 = 0.12;
+/// Times the first guess of a root: up to there its guard is looked at, where it comes back in the same cell.
+const BEHIND: f64 = 1.1;
+/// Guards beyond which windows are cheaper: they follow the nearest, while cells look at all.
+const MANY: usize = 4;
 /// Roundings of a guard's value.
 const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
 
-/// A guard over a cell, divided by σ where it starts at zero.
+/// A guard over a cell, divided by σ to the power that it starts with.
 struct Piece<'a> {
     tables: &'a Tables,
     shares: Phases,
@@ -33,14 +37,16 @@ struct Piece<'a> {
     /// Bernstein coefficients of the polynomial.
     b: Cell,
     left_out: f64,
-    touches: bool,
+    /// That power.
+    order: usize,
 }
 
-/// The one root of a guard in a cell.
+/// The first root of a guard in a cell.
 struct Fall {
     guard: usize,
-    /// First guess of its σ.
+    /// First guess of its σ, and up to where it is the only one.
     guess: f64,
+    high: f64,
     /// By powers of σ.
     powers: [f64; KEPT],
     left_out: f64,
@@ -83,12 +89,12 @@ impl Search {
                 let precedes = first.as_ref().is_some_and(|first| first.guess <= fall.guess);
                 (first, later) = if precedes { (first, Some(fall)) } else { (Some(fall), first) };
             }
-            if let Some(Fall { guard, guess, .. }) = first {
+            if let Some(Fall { guard, guess, high, .. }) = first {
                 let window = cells.length;
                 self.trial.resize(1, Kernels::NONE);
                 self.surveys.now = now;
                 let before = *clarity;
-                let time = self.polish(motion, signals, Root { guard, guess, high: 1.0, window }, clarity);
+                let time = self.polish(motion, signals, Root { guard, guess, high, window }, clarity);
                 if later.is_some_and(|later| !later.comes_after((time.min(limit) * AFTER - now) / window)) {
                     *clarity = before;
                     return None;
@@ -110,12 +116,12 @@ impl Search {
     }
 
     /// Guards that are further from zero than their signals can move them, one bit each; `None` where one starts as cells do not, or
-    /// where there are more guards than bits.
+    /// where there are many.
     #[inline(always)]
-    fn out_of_reach(&self, motion: Motion<'_>, signals: &Signals, clarity: &Clarity) -> Option<u64> {
+    fn out_of_reach(&self, motion: Motion<'_>, signals: &Signals, clarity: &Clarity) -> Option<u8> {
         let is_bounded = motion.bank.near_critical.is_empty();
-        let mut far = 0_u64;
-        if self.guards.len() > u64::BITS as usize {
+        let mut far = 0_u8;
+        if self.guards.len() > MANY {
             return None;
         }
         for (index, guard) in self.guards.iter().enumerate() {
@@ -124,10 +130,10 @@ impl Search {
                     let reach = motion.blocks[0].amplitudes(signals.of(guard.signal).phases[0]).sum();
                     let least = guard.kept_clear(clarity, reach);
                     let is_far = is_bounded && is_never_reached(guard.parabola, reach + least, guard.margin(clarity));
-                    far |= u64::from(is_far) << index;
+                    far |= u8::from(is_far) << index;
                 }
-                Start::Touching { order: 1, slope } if slope > 0.0 => {}
-                Start::Touching { .. } => return None,
+                Start::Touching { order: 1, slope } if slope <= 0.0 => return None,
+                Start::Touching { .. } => {}
             }
         }
         Some(far)
@@ -147,10 +153,18 @@ impl<'a> Piece<'a> {
         let (watched, length, sign) = (signals.of(guard.signal), cells.length, guard.sign);
         let bent = guard.parabola.p2 * (length * length);
         let mut shares = watched.phases[0];
-        let (touches, base, size) = match guard.start {
-            Start::Touching { slope, .. } if now == 0.0 => (true, [slope * length, bent, 0.0], 0.0),
+        let Parabola { mut p0, mut p1, p2 } = guard.parabola;
+        let (order, base, size) = match guard.start {
+            Start::Touching { order, slope } if now == 0.0 => match order {
+                1 if slope.is_nan() => {
+                    let size = length * (p1.abs() + shares.rate.abs().sum());
+                    (1, [length * (p1 + sign * watched.sum.rate), bent, 0.0], size)
+                }
+                1 => (1, [slope * length, bent, 0.0], 0.0),
+                2 => (2, [bent, 0.0, 0.0], 0.0),
+                _ => (3, [0.0; 3], 0.0),
+            },
             _ => {
-                let Parabola { mut p0, mut p1, p2 } = guard.parabola;
                 let (mut sum, mut size) = (watched.sum, p0.abs() + watched.size);
                 if now > 0.0 {
                     size += (p1 * now).abs() + (p2 * (now * now)).abs();
@@ -158,15 +172,15 @@ impl<'a> Piece<'a> {
                     shares = motion.blocks[0].advance(shares, transfer);
                     (sum.value, sum.rate) = (shares.value.sum(), shares.rate.sum());
                 }
-                (false, [p0 + sign * sum.value, (p1 + sign * sum.rate) * length, bent], size)
+                (0, [p0 + sign * sum.value, (p1 + sign * sum.rate) * length, bent], size)
             }
         };
         let shares = Phases { value: shares.value * sign, rate: shares.rate * sign };
-        let tables = cells.tables(touches);
+        let tables = cells.tables(motion.each, order);
         let moved = cells.bernstein(tables, shares);
         let b = std::array::from_fn(|i| moved[i] + base[0] + (FIRST[i] * base[1] + SECOND[i] * base[2]));
         let size = size + base[0].abs() + base[1].abs() + base[2].abs();
-        Self { tables, shares, base, b, left_out: tables.left_out(shares) + ROUNDINGS * size, touches }
+        Self { tables, shares, base, b, left_out: tables.left_out(shares) + ROUNDINGS * size, order }
     }
 
     #[inline(always)]
@@ -178,7 +192,7 @@ impl<'a> Piece<'a> {
     /// Whether it may turn back on its way to zero nearer to that than anything before, where it is positive all through.
     #[inline(always)]
     fn may_come_near(&self, known: f64) -> bool {
-        if self.touches { !rises_then_falls(&flat(self.b), 1) } else { self.least() < known + self.left_out }
+        if self.order > 0 { !rises_then_falls(&flat(self.b), self.order) } else { self.least() < known + self.left_out }
     }
 
     /// Whether it begins with a slope that is not negative: where the cell before it ends, it may have come near.
@@ -188,23 +202,38 @@ impl<'a> Piece<'a> {
         low.at(1) >= low.at(0)
     }
 
-    /// Its root, if it has one and no more, and does not turn before if it is a distance.
+    /// Its first root, if it does not turn before where it is a distance.
     #[inline(always)]
     fn fall(&self, cells: &Cells, guard: usize, is_distance: bool) -> Option<Fall> {
         let (b, left_out) = (flat(self.b), self.left_out);
         let signs = Signs::of(&b, left_out);
-        if !signs.change_once() || is_distance && if self.touches { !rises_then_falls(&b, 1) } else { may_turn(&b) } {
+        if !signs.begin_positive() {
             return None;
         }
         let mut powers = flat(cells.powers(self.tables, self.shares));
         powers.iter_mut().zip(self.base).for_each(|(power, base)| *power += base);
         let (guess, slope, step) = root(|x| evaluate(&powers, x), signs.crossing(&b, 0.0), 1.0);
+        let high = if self.falls_once(&b, signs, is_distance) {
+            1.0
+        } else {
+            // What it does behind the root is no matter.
+            let high = BEHIND * guess;
+            let part = if high < 1.0 { cut(&b, high)[0] } else { return None };
+            self.falls_once(&part, Signs::of(&part, left_out), is_distance).then_some(high)?
+        };
         let [rest_turns, bend] = self.tables.turning(self.shares);
         let bend = bend + 2.0 * self.base[2].abs();
         let steep = -slope - DOUBTFUL_STEP * bend * step;
         // With slope −s at the root p passes the band within 2R/s, and turns by less than 2R bend/s on the way. Twice that is asked for.
         let falls = steep > 0.0 && steep * steep > 4.0 * left_out * bend + 2.0 * rest_turns * steep;
-        falls.then_some(Fall { guard, guess, powers, left_out })
+        falls.then_some(Fall { guard, guess, high, powers, left_out })
+    }
+
+    /// Whether it has one root and no more where these are its coefficients, and does not turn before if it is a distance.
+    #[inline(always)]
+    fn falls_once(&self, b: &[f64; KEPT], signs: Signs<KEPT>, is_distance: bool) -> bool {
+        let turns = || if self.order > 0 { !rises_then_falls(b, self.order) } else { may_turn(b) };
+        signs.change_once() && !(is_distance && turns())
     }
 }
 
@@ -212,7 +241,7 @@ impl Fall {
     /// Whether the guard is surely positive up to this σ.
     #[inline(always)]
     fn comes_after(&self, sigma: f64) -> bool {
-        evaluate(&self.powers, sigma).0 > self.left_out
+        sigma < self.high && evaluate(&self.powers, sigma).0 > self.left_out
     }
 }
 

@@ -48,11 +48,12 @@ pub(crate) fn bernstein(a: &Coefficients) -> Coefficients {
 }
 
 /// Bernstein coefficients on [0, x] and on [x, 1], by de Casteljau's averages.
-pub(crate) fn cut(b: &Coefficients, x: f64) -> [Coefficients; 2] {
+#[inline]
+pub(crate) fn cut<const N: usize>(b: &[f64; N], x: f64) -> [[f64; N]; 2] {
     let (mut left, mut right) = (*b, *b);
-    for round in 0..=DEGREE {
+    for round in 0..N {
         left[round] = right[0];
-        for i in 0..DEGREE - round {
+        for i in 0..N - 1 - round {
             right[i] = (1.0 - x) * right[i] + x * right[i + 1];
         }
     }
@@ -153,6 +154,11 @@ impl<const N: usize> Signs<N> {
     #[inline(always)]
     pub(crate) fn are_all_positive(self) -> bool {
         self.positive == Self::ALL
+    }
+
+    #[inline(always)]
+    pub(crate) fn begin_positive(self) -> bool {
+        self.positive & 1 == 1
     }
 
     /// Positive, then doubtful, then negative; any of them may be missing.
