@@ -219,3 +219,30 @@ fn a_run_that_is_drawn_to_an_orbit_is_not_quasi_periodic() {
     let later = [("skip: 300 cycles, average: 300 cycles", "skip: 5000 cycles, average: 3000 cycles")];
     assert_eq!(named(&later), "periodic 8:34");
 }
+
+/// A motion with two impacts a cycle, next to where it loses its stability.
+const SLOW: &str = "title: Slow
+about: A damper without gravity.
+scene:
+  structure: {single_mass: {mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.02}}
+  gravity: 0 m/s^2
+  dampers: [{mass: 0.1 kg, gap: 100 mm, floor: {rigid: {restitution: 0.6}}}]
+  excitation: {harmonic: {force: swept, frequency_ratio: 1.1}}
+  start: {displacement: -7.95 mm, velocity: -0.0967 m/s, particles: [{height: 68.9 mm, velocity: -0.975 m/s}]}
+sweep: {force: [5.236 N, 5.24 N]}
+run: {skip: 25 cycles, average: 100 cycles, ensemble: none}
+measure: [motion]
+";
+
+#[test]
+fn a_run_that_nears_an_orbit_more_slowly_than_it_lasts_is_not_quasi_periodic() {
+    // The largest multipliers are 0.99903 and 0.99773: by another integrator, and Newton’s method on its map.
+    for window in ["skip: 25 cycles, average: 100 cycles", "skip: 100 cycles, average: 200 cycles"] {
+        let table = Study::new(SLOW, &[("skip: 25 cycles, average: 100 cycles", window)]).run();
+        assert_eq!(table.texts("motion").unwrap(), ["not settled"; 2], "{window}");
+    }
+    // Below 5.234 N the orbit lets go of it, and the motion is a torus about it, the same after 60 000 cycles.
+    let long = ("skip: 25 cycles, average: 100 cycles", "skip: 3000 cycles, average: 1000 cycles");
+    let table = Study::new(SLOW, &[("5.236 N, 5.24 N", "5.22 N, 5.23 N"), long]).run();
+    assert_eq!(table.texts("motion").unwrap(), ["quasi-periodic"; 2]);
+}

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | at rest on the floor, periodic, sticking, completed chatter | the last state is within a millionth of the motion of an orbit that closes (Newton's step with the multipliers of the last period) and no multiplier exceeds 1 |
 //! | chaotic | no such period, and a Lyapunov exponent above zero by three standard errors |
-//! | quasi-periodic | no such period, an exponent of zero within its standard error, which is small, and returns that come no closer with time and are not drawn to an orbit, in a run that is long enough to see the slowest transient die away |
+//! | quasi-periodic | no such period, an exponent of zero within its standard error, which is small, and returns that come no closer with time and are not drawn to an orbit, in a run that is long enough to see the slowest transient die away and far from orbits that draw it in, or let it go, so slowly that it could not show |
 //! | not settled | anything else |
 
 use std::fmt;
@@ -30,12 +30,15 @@ const REPEATED: f64 = 1e-9;
 /// enough to a return.
 const DRAWS_IN: f64 = 0.995;
 const NEARBY: f64 = 1e-2;
+/// Cycles of the orbits that may hold a run for longer than it lasts, and how near to them it is then, in units of the motion.
+const HOLDS: usize = 4;
+const HELD: f64 = 5e-2;
 /// A multiplier of a motion without damping may round above 1 by this.
 pub(crate) const NEUTRAL: f64 = 1e-9;
 /// Standard errors that make an exponent positive.
 const ERRORS: f64 = 3.0;
 /// A standard error above this, a cycle, does not tell zero from weak chaos.
-const SHARP: f64 = 0.05;
+const SHARP: f64 = 0.01;
 /// Returns of a motion that no longer settles come no closer than this from one half of the run to the other.
 const STEADY: f64 = 0.8;
 
@@ -199,7 +202,12 @@ pub(crate) fn name(system: &HybridSystem, tape: &Tape, window: usize) -> Result<
             let is_zero = value.abs() <= error && error <= SHARP;
             if value > ERRORS * error {
                 MotionKind::Chaotic
-            } else if is_zero && !settles && closing(&scale, ends) > STEADY && shows_decay(system, tape, window) {
+            } else if is_zero
+                && !settles
+                && closing(&scale, ends) > STEADY
+                && shows_decay(system, tape, window)
+                && !is_held(system, &scale, tape, window)?
+            {
                 MotionKind::QuasiPeriodic
             } else {
                 MotionKind::NotSettled
@@ -219,6 +227,24 @@ fn shows_decay(system: &HybridSystem, tape: &Tape, window: usize) -> bool {
     let Some(slowest) = rates.reduce(f64::min) else { return true };
     let has_events = tape.last(window).flat_map(|cycle| &cycle.steps).any(|step| matches!(step, Step::Event(_)));
     has_events && libm::exp(-slowest * system.drive.period * (window / 2) as f64) < STEADY
+}
+
+/// True if the run ends next to an orbit that it could not have left, nor come much nearer to, in half of its last `window` cycles: on
+/// its way it looks like a motion that never comes again, next to a period doubling above all.
+fn is_held(system: &HybridSystem, scale: &Scale, tape: &Tape, window: usize) -> Result<bool, EngineError> {
+    let last = tape.ends.len() - 1;
+    for period in 1..=HOLDS.min(last) {
+        if tape.last(period).any(|cycle| cycle.blurred) {
+            continue;
+        }
+        let map = Period::new(system, scale, tape.last(period));
+        let orbit = map.orbit(scale.miss(&tape.ends[last - period], &tape.ends[last]))?;
+        let lets_go = libm::pow(1.0 / STEADY, 2.0 * period as f64 / window as f64);
+        if orbit.attracts(lets_go, HELD) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// What the last cycles of a tape went through.
