@@ -1,7 +1,7 @@
 //! An experiment without a statement to judge: its page leads with what it measured first where its rows are few, and with the
 //! places that were looked for.
 
-use crate::experiment::{Experiment, SearchPoint};
+use crate::experiment::{Experiment, Maximise, SearchPoint};
 use crate::reference::symbol;
 use crate::study::row_in_words;
 use crate::table::Table;
@@ -31,7 +31,30 @@ pub(super) fn searched(experiment: &Experiment, table: &Table) -> Option<String>
     };
     let of = column_words(&of_key(&maximise.measure));
     let to = if known.len() > 1 { format!(" to {}", place(*most)) } else { String::new() };
-    Some(format!("**In short.** {what} {of} at {} = {}{to}.\n\n", symbol(&of_key(&maximise.over)), place(*least)))
+    let beyond = beyond(maximise, &known);
+    Some(format!(
+        "**In short.** {what} {of} at {} = {}{to}.{beyond}\n\n",
+        symbol(&of_key(&maximise.over)),
+        place(*least)
+    ))
+}
+
+/// That some of the largest values lie at an end of the range, so that there may be larger ones behind it.
+fn beyond(maximise: &Maximise, known: &[(usize, f64)]) -> String {
+    let is_end = |at: f64| [maximise.grid.first(), maximise.grid.last()].contains(&Some(&at));
+    let count = known.iter().filter(|(_, at)| is_end(*at)).count();
+    match (maximise.wanted, count) {
+        (SearchPoint::Onset, _) | (SearchPoint::Maximum, 0) => String::new(),
+        (SearchPoint::Maximum, _) if count == known.len() => {
+            " That is an end of the range searched: larger ones may lie beyond.".to_owned()
+        }
+        (SearchPoint::Maximum, _) => {
+            format!(
+                " In {count} of {} rows that is an end of the range searched: larger ones may lie beyond.",
+                known.len()
+            )
+        }
+    }
 }
 
 /// `Velocity ratio 3.353 (h′ = 50), 2.802 (h′ = 90).`; `None` for more rows, and where a row has no value.

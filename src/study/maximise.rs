@@ -2,8 +2,9 @@
 //!
 //! For a maximum each round halves the two intervals beside the best point of a grid, so that its place is known to within the
 //! distance to its neighbours. An onset lies between the last point of the grid without an event and the first one with some;
-//! as events are certified, halving that interval closes in on it to [`KNOWN`] of the parameter. Values come from [`Evaluate`]
-//! as they are: ensemble means where the motion is chaotic.
+//! as events are certified, halving that interval closes in on it to [`KNOWN`] of the parameter. Where the motion is chaotic, events
+//! begin here and there between two points of the grid, and sooner in a longer run: the onset is then known to no more than their
+//! distance. Values come from [`Evaluate`] as they are: ensemble means where the motion is chaotic.
 
 use rayon::prelude::*;
 
@@ -76,7 +77,13 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
         let best = best(&tried).ok_or(RowFailure::NoGrid)?;
         let at = tried[best].at;
         let within = neighbours(&tried, best).map(|other| (tried[other].at - at).abs()).fold(0.0, f64::max);
-        Ok((tried.swap_remove(best).evaluated, Place { at, within }))
+        let fall = neighbours(&tried, best).map(|other| tried[best].value - tried[other].value).fold(0.0, f64::max);
+        let mut evaluated = tried.swap_remove(best).evaluated;
+        if let Some(measured) = evaluated.measured.get_mut(self.measure) {
+            // A parabola through the three points is higher by no more between them.
+            measured.numerical = libm::hypot(measured.numerical, fall / 8.0);
+        }
+        Ok((evaluated, Place { at, within }))
     }
 
     /// The smallest value of the parameter at which the measure is above zero, as far as the grid tells.
@@ -91,7 +98,8 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
         }
         let missed = |before| RowFailure::NoOnset { measure: words::of_key(&self.maximise.measure), before };
         let first = tried.iter().position(|one| one.value > 0.0).ok_or_else(|| missed(false))?;
-        let mut below = first.checked_sub(1).map(|last| tried[last].at).ok_or_else(|| missed(true))?;
+        let before = first.checked_sub(1).map(|last| tried[last].at).ok_or_else(|| missed(true))?;
+        let mut below = before;
         let mut above = tried.swap_remove(first);
         for _ in 0..self.maximise.bisections() {
             let at = between(below, above.at);
@@ -105,7 +113,8 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
                 below = at;
             }
         }
-        Ok((above.evaluated, Place { at: above.at, within: above.at - below }))
+        let from = if above.evaluated.chaotic { before } else { below };
+        Ok((above.evaluated, Place { at: above.at, within: above.at - from }))
     }
 
     /// Several points; of several failures the first in order is reported, not the first in time.
