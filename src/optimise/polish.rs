@@ -66,6 +66,8 @@ pub fn polish<E>(bounds: &Bounds, start: &[f64], most: u64, slope: &mut Smooth<'
         trail,
         stopped,
     };
+    let settled =
+        |here: &Here| if (0..here.shares.len()).any(|i| leaves(here, i)) { Stopped::Bound } else { Stopped::Converged };
     let shares = DVector::from_vec(bounds.shares(start));
     let (Some(mut here), mut evaluations) = look(&shares)? else {
         let nowhere = Here { gradient: DVector::zeros(shares.len()), shares, value: f64::NAN };
@@ -77,7 +79,7 @@ pub fn polish<E>(bounds: &Bounds, start: &[f64], most: u64, slope: &mut Smooth<'
     let mut curvature = DMatrix::identity(here.shares.len(), here.shares.len()) * (here.gradient.norm() / FIRST);
     loop {
         let Some(direction) = direction(&here, &curvature) else {
-            return Ok(found(&here, trail, evaluations, Stopped::Converged));
+            return Ok(found(&here, trail, evaluations, settled(&here)));
         };
         let promised = here.gradient.dot(&direction);
         if -promised <= FLAT * here.value.abs() {
@@ -88,13 +90,13 @@ pub fn polish<E>(bounds: &Bounds, start: &[f64], most: u64, slope: &mut Smooth<'
             let (there, so_far) = look(&ahead(&here, &direction))?;
             evaluations = so_far;
             let Some(there) = there.filter(|there| is_lower(there, &here)) else {
-                return Ok(found(&here, trail, evaluations, Stopped::Converged));
+                return Ok(found(&here, trail, evaluations, settled(&here)));
             };
             let goes_on = there.gradient.norm() < 0.5 * here.gradient.norm();
             learn(&mut curvature, &(&there.shares - &here.shares), &(&there.gradient - &here.gradient));
             here = there;
             if !goes_on {
-                return Ok(found(&here, trail, evaluations, Stopped::Converged));
+                return Ok(found(&here, trail, evaluations, settled(&here)));
             }
             continue;
         }
@@ -105,7 +107,7 @@ pub fn polish<E>(bounds: &Bounds, start: &[f64], most: u64, slope: &mut Smooth<'
                 return Ok(found(&here, trail, evaluations, Stopped::Evaluations));
             }
             if share * direction.amax() < SMALLEST {
-                let stopped = if met_an_edge { Stopped::Edge } else { Stopped::Converged };
+                let stopped = if met_an_edge { Stopped::Edge } else { settled(&here) };
                 return Ok(found(&here, trail, evaluations, stopped));
             }
             let (there, so_far) = look(&ahead(&here, &(share * &direction)))?;
@@ -132,14 +134,16 @@ fn is_lower(there: &Here, here: &Here) -> bool {
     there.value <= here.value + ENOUGH * promised || is_level && there.gradient.norm() < here.gradient.norm()
 }
 
+/// A coordinate at an end of its side would go beyond it.
+fn leaves(here: &Here, i: usize) -> bool {
+    let (share, slope) = (here.shares[i], here.gradient[i]);
+    share <= 0.0 && slope > 0.0 || share >= 1.0 && slope < 0.0
+}
+
 /// The step that the curvature suggests for the coordinates that are free; `None` if none is.
 fn direction(here: &Here, curvature: &DMatrix<f64>) -> Option<DVector<f64>> {
-    let (shares, gradient) = (&here.shares, &here.gradient);
-    let is_free = |i: &usize| {
-        let leaves = shares[*i] <= 0.0 && gradient[*i] > 0.0 || shares[*i] >= 1.0 && gradient[*i] < 0.0;
-        !leaves && gradient[*i] != 0.0
-    };
-    let free: Vec<usize> = (0..shares.len()).filter(is_free).collect();
+    let gradient = &here.gradient;
+    let free: Vec<usize> = (0..gradient.len()).filter(|&i| !leaves(here, i) && gradient[i] != 0.0).collect();
     if free.is_empty() {
         return None;
     }
@@ -147,7 +151,7 @@ fn direction(here: &Here, curvature: &DMatrix<f64>) -> Option<DVector<f64>> {
     let down = DVector::from_iterator(free.len(), free.iter().map(|&i| -gradient[i]));
     // Updates keep the matrix positive definite but for rounding.
     let step = part.cholesky().map_or_else(|| &down * (FIRST / down.norm()), |factors| factors.solve(&down));
-    let mut direction = DVector::zeros(shares.len());
+    let mut direction = DVector::zeros(gradient.len());
     for (place, &i) in free.iter().enumerate() {
         direction[i] = step[place];
     }

@@ -91,6 +91,8 @@ pub enum Stopped {
     Exhausted,
     /// No step goes down any more.
     Converged,
+    /// The same, but beyond an end of a side.
+    Bound,
     /// A step down leads to where the function has no derivative.
     Edge,
     /// The function has no derivative where the descent should begin.
@@ -108,6 +110,7 @@ impl Stopped {
             Self::Tolerance => "tolerance",
             Self::Exhausted => "exhausted",
             Self::Converged => "converged",
+            Self::Bound => "bound",
             Self::Edge => "edge",
             Self::NotSmooth => "not smooth",
         }
