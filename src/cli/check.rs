@@ -1,5 +1,6 @@
 //! `shotdamp check`: the verdicts for the tables on disk.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::args::CheckArgs;
@@ -45,7 +46,7 @@ pub(super) fn check(layout: &Layout, args: &CheckArgs) -> Result<Exit, CliError>
         print(&text)?;
     }
     if args.reports {
-        exit = exit.max(compare_reports(&study, &judgement, alone)?);
+        exit = exit.max(compare_reports(&study, &judgement, (!args.choice.is_all()).then_some(&chosen.ids), alone)?);
     }
     if let Some(to) = &args.junit {
         to.write(&report::junit(&view))?;
@@ -100,8 +101,14 @@ fn self_test(study: &Study, chosen: &Chosen<'_>) -> (String, Exit) {
     (description, if failures.is_empty() { Exit::AsExpected } else { Exit::Unexpected })
 }
 
-fn compare_reports(study: &Study, judgement: &Judgement, alone: bool) -> Result<Exit, CliError> {
-    let departures = departures(study, judgement);
+/// Whether the reports are those of these tables: all of them, or those of the experiments in `only`.
+fn compare_reports(
+    study: &Study,
+    judgement: &Judgement,
+    only: Option<&BTreeSet<&str>>,
+    alone: bool,
+) -> Result<Exit, CliError> {
+    let departures = departures(study, judgement, only);
     for departure in &departures {
         print_error(&format!("error: {departure}\n"));
     }

@@ -91,6 +91,11 @@ impl Choice {
         self.admits(&known.heading.id.0, &known.folder)
     }
 
+    /// True if nothing was chosen, which means everything.
+    pub fn is_all(&self) -> bool {
+        self.patterns.is_empty() && self.folder.is_none()
+    }
+
     fn admits(&self, id: &str, folder: &str) -> bool {
         let within =
             |wanted: &str| folder.strip_prefix(wanted).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));

@@ -14,6 +14,8 @@ use crate::study::{Refused, Study, stem};
 const DEEPEST: u32 = 8;
 /// What a run writes below `reports/` for an experiment.
 const ENDINGS: [&str; 3] = ["md", "png", "svg"];
+/// Experiments without a table that are named.
+const NAMED: usize = 3;
 /// Longest part of a line that is told.
 const LONGEST: usize = 160;
 
@@ -33,8 +35,8 @@ pub enum How {
     Missing,
     /// Nothing would write it.
     Extra,
-    /// There is no table that is up to date.
-    NoTable,
+    /// These experiments have no table that is up to date.
+    NoTable(Vec<String>),
     /// It holds verdicts, and a reference cannot be read.
     NotJudged,
     /// It cannot be drawn, for this reason.
@@ -55,16 +57,16 @@ pub enum How {
 }
 
 /// Every file below `reports/` that departs from what would be written, in the order of the names; while references cannot be read,
-/// these alone.
+/// these alone. Of the experiments in `only` where there are any: then without the pages of the whole study.
 #[must_use]
-pub fn departures(study: &Study, judgement: &Judgement) -> Vec<Departure> {
+pub fn departures(study: &Study, judgement: &Judgement, only: Option<&BTreeSet<&str>>) -> Vec<Departure> {
     // Its verdicts stand on the pages of other experiments, too, and a variant that only its entries ask for is not planned.
     let unread = study.unread.iter().map(Refused::file).filter(|file| file.starts_with("reference/"));
     let unread: Vec<_> = unread.map(|file| Departure { file: file.into(), how: How::NotJudged }).collect();
     if !unread.is_empty() {
         return unread;
     }
-    let expected = render(study, judgement);
+    let expected = render(study, judgement, only);
     let mut found: Vec<Departure> = Vec::new();
     for (file, bytes) in &expected {
         let how = match bytes {
@@ -77,11 +79,25 @@ pub fn departures(study: &Study, judgement: &Judgement) -> Vec<Departure> {
         };
         found.extend(how.map(|how| Departure { file: file.clone(), how }));
     }
+    let is_asked_for = |id: &str| only.is_none_or(|only| only.contains(id));
     let unmade = study.items.iter().filter(|item| item.record().is_none());
-    found.extend(
-        unmade.map(|item| Departure { file: format!("reports of {}", item.source.experiment.id), how: How::NoTable }),
-    );
-    let extra = extra(study, &expected.into_keys().collect());
+    let unmade = unmade.map(|item| item.source.experiment.id.0.clone()).filter(|id| is_asked_for(id));
+    match unmade.collect::<Vec<_>>() {
+        none if none.is_empty() => {}
+        ids => found.push(Departure { file: format!("reports of {}", named(&ids)), how: How::NoTable(ids) }),
+    }
+    let extra = match only {
+        None => extra(study, &expected.into_keys().collect()),
+        Some(_) => {
+            let ids = study.texts.ids();
+            let mut extra = extra(study, &rendered(study, judgement));
+            // The longest id that a name begins with is that of its experiment.
+            let owner =
+                |file: &str| ids.iter().copied().filter(|id| stem(file).starts_with(id)).max_by_key(|id| id.len());
+            extra.retain(|file| owner(file).is_some_and(is_asked_for));
+            extra
+        }
+    };
     found.extend(extra.into_iter().map(|file| Departure { file, how: How::Extra }));
     found.sort_by(|a, b| a.file.cmp(&b.file));
     found
@@ -115,6 +131,14 @@ fn extra(study: &Study, expected: &BTreeSet<String>) -> BTreeSet<String> {
     let otherwise = |file: &str| file.strip_prefix("reports/").is_some_and(is_written_otherwise);
     present.retain(|file| !expected.contains(file) && !unmade(file) && !otherwise(file));
     present
+}
+
+/// A few experiments by their ids, of many the number.
+fn named(ids: &[String]) -> String {
+    match ids {
+        few if few.len() <= NAMED => few.join(", "),
+        many => format!("{} experiments ({}, …)", many.len(), many[..NAMED].join(", ")),
+    }
 }
 
 /// `None` if they are the same.
@@ -169,7 +193,10 @@ impl fmt::Display for Departure {
         match &self.how {
             How::Missing => write!(f, "{file}: is not there"),
             How::Extra => write!(f, "{file}: nothing writes it; remove it"),
-            How::NoTable => write!(f, "{file}: there is no table that is up to date; `shotdamp run` makes it"),
+            How::NoTable(ids) => match ids.as_slice() {
+                [id] => write!(f, "{file}: there is no table that is up to date; `shotdamp run {id}` makes it"),
+                _ => write!(f, "{file}: there are no tables that are up to date; `shotdamp run` makes them"),
+            },
             How::NotJudged => write!(f, "reports cannot be checked while {file} cannot be read"),
             How::NotDrawn(why) => write!(f, "{file}: cannot be drawn: {why}"),
             How::Unreadable(why) => write!(f, "{file}: cannot be read: {why}"),

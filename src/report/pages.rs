@@ -136,9 +136,15 @@ fn judged_elsewhere(study: &Study) -> usize {
     judged.intersection(&unjudged).count()
 }
 
-/// Everything that a run would write under `reports/`, by name within the study; or why it cannot be made.
-pub(super) fn render(study: &Study, judgement: &Judgement) -> BTreeMap<String, Result<Vec<u8>, NotDrawn>> {
-    let pages: Vec<Page<'_>> = study.items.iter().filter_map(|item| page(study, item)).collect();
+/// Everything that a run would write under `reports/`, by name within the study; or why it cannot be made. Of the experiments in `only`
+/// where there are any: then without the pages of the whole study.
+pub(super) fn render(
+    study: &Study,
+    judgement: &Judgement,
+    only: Option<&BTreeSet<&str>>,
+) -> BTreeMap<String, Result<Vec<u8>, NotDrawn>> {
+    let is_asked_for = |item: &&Item| only.is_none_or(|only| only.contains(item.source.experiment.id.0.as_str()));
+    let pages: Vec<Page<'_>> = study.items.iter().filter(is_asked_for).filter_map(|item| page(study, item)).collect();
     let mut figures = draw(study, judgement, pages.iter().flat_map(jobs));
     let mut files = BTreeMap::new();
     for page in &pages {
@@ -155,7 +161,10 @@ pub(super) fn render(study: &Study, judgement: &Judgement) -> BTreeMap<String, R
         }
         files.insert(page_of(page), Ok(text.into_bytes()));
     }
-    files.extend(views::of_the_study(study, judgement).into_iter().map(|(name, text)| (name, Ok(text.into_bytes()))));
+    if only.is_none() {
+        let of_the_study = views::of_the_study(study, judgement);
+        files.extend(of_the_study.into_iter().map(|(name, text)| (name, Ok(text.into_bytes()))));
+    }
     files
 }
 

@@ -331,6 +331,42 @@ fn committed_reports_are_those_that_would_be_generated() {
 }
 
 #[test]
+#[test]
+fn the_reports_of_one_experiment_are_checked_without_those_of_others() {
+    let desk = simulated();
+    assert_eq!(shotdamp(&desk, &[]).code, 0);
+    desk.put("reports/ch3/ch3-stop.md", "Polished.");
+    desk.put("reports/README.md", "Polished.");
+    let gap = shotdamp(&desk, &["check", "--reports", "ch3-gap"]);
+    assert_eq!((gap.code, gap.err.as_str()), (0, ""));
+    let stop = shotdamp(&desk, &["check", "--reports", "ch3-stop"]);
+    assert!(stop.err.contains("ch3-stop.md:1: differs") && !stop.err.contains("README"), "{}", stop.err);
+
+    // As in a study that was just cloned.
+    fs::remove_dir_all(desk.layout.path("results")).unwrap();
+    let all = shotdamp(&desk, &["check", "--reports"]).err;
+    let line = "reports of ch3-gap, ch3-stop: there are no tables that are up to date; `shotdamp run` makes them\n";
+    assert!(all.contains(line) && all.matches("up to date").count() == 1, "{all}");
+    let gap = shotdamp(&desk, &["check", "--reports", "ch3-gap"]).err;
+    assert!(gap.contains("`shotdamp run ch3-gap` makes it") && !gap.contains("ch3-stop"), "{gap}");
+}
+
+#[test]
+fn a_run_says_which_experiments_mistakes_leave_out() {
+    let desk = simulated();
+    desk.put("experiments/ch3/ch3-gap.yaml", "title: [\n");
+    desk.put("reference/ch3/ch3-stop.yaml", "entries: [\n");
+    for arguments in [&["run", "ch3-*", "--dry-run"][..], &["run", "ch3-*"]] {
+        let said = shotdamp(&desk, arguments);
+        assert_eq!(said.code, 2);
+        let left_out = "Left out, because of mistakes in their files: ch3-gap.\n";
+        assert!(said.err.contains(left_out), "{}", said.err);
+        assert!(said.err.ends_with("Not judged, because of mistakes in their references: ch3-stop.\n"), "{}", said.err);
+    }
+    let gap = shotdamp(&desk, &["run", "ch3-gap", "--dry-run"]);
+    assert!(gap.out.is_empty() && gap.err.contains("Left out"), "{}{}", gap.out, gap.err);
+}
+
 fn a_check_of_a_file_that_cannot_be_read_counts_no_entries() {
     let desk = simulated();
     desk.put("experiments/ch3/ch3-gap.yaml", "title: [\n");
