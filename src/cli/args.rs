@@ -388,10 +388,11 @@ pub(super) struct CheckArgs {
 #[command(after_help = "\
 Each side is a folder of tables (results/), or of reports (reports/, or a verdicts.json).
 Two folders of tables are compared row by row; otherwise verdict by verdict, tables judged by this study's reference.
-Exit code 1 if anything moved beyond its uncertainty.
+Exit code 1 if anything moved beyond its uncertainty. Entries of experiments that were not run are counted apart.
 
 Examples:
   shotdamp diff                               what the reports say against what the tables give now
+  shotdamp diff --only 'ch3-gap*'
   shotdamp diff before/results results
   shotdamp diff before/results --all")]
 pub(super) struct DiffArgs {
@@ -401,6 +402,9 @@ pub(super) struct DiffArgs {
     /// The second [default: the tables of this study]
     #[arg(value_name = "B")]
     pub b: Option<PathBuf>,
+    /// Only these experiments: an id, or a pattern with * and ?
+    #[arg(long, value_name = "PATTERN")]
+    pub only: Option<String>,
     /// List all that moved, not only the farthest few of each experiment
     #[arg(long)]
     pub all: bool,

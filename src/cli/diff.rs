@@ -9,8 +9,9 @@ use super::args::DiffArgs;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::print;
-use super::select::open;
+use super::select::{matches, no_match, open};
 use crate::atomic::place_of;
+use crate::reference::{Judged, NOT_RUN, Verdict};
 use crate::report::{self, Detail, Movement, Standing, VERDICTS, judge_tables};
 use crate::study::{Item, Layout, Reason, State, Study};
 use crate::table::{Table, parquet};
@@ -25,7 +26,14 @@ enum Side {
 pub(super) fn diff(layout: &Layout, args: &DiffArgs) -> Result<Exit, CliError> {
     let a = args.a.clone().unwrap_or_else(|| layout.path(VERDICTS));
     let b = args.b.clone().unwrap_or_else(|| layout.results());
-    let (before, now) = (Side::read(&a)?, Side::read(&b)?);
+    let (mut before, mut now) = (Side::read(&a)?, Side::read(&b)?);
+    if let Some(pattern) = &args.only {
+        let ids: BTreeSet<String> = before.ids().chain(now.ids()).map(str::to_owned).collect();
+        if !ids.iter().any(|id| matches(pattern, id)) {
+            return Err(no_match(pattern, &ids.iter().map(String::as_str).collect()));
+        }
+        [&mut before, &mut now].into_iter().for_each(|side| side.keep(pattern));
+    }
     let opened = OnceCell::new();
     let study = || match opened.get() {
         Some(study) => Ok(study),
@@ -39,16 +47,21 @@ pub(super) fn diff(layout: &Layout, args: &DiffArgs) -> Result<Exit, CliError> {
             stale.extend(stale_among(study()?, tables));
         }
     }
+    let mut not_run = Vec::new();
     let (movements, mut whole) = match (before, now) {
         (Side::Tables(a), Side::Tables(b)) => of_tables(&a, &b),
         (a, b) => {
-            let movement = report::between_verdicts(&a.verdicts(study)?, &b.verdicts(study)?);
+            let (mut a, mut b) = (a.verdicts(study, &mut not_run)?, b.verdicts(study, &mut not_run)?);
+            for side in [&mut a, &mut b] {
+                side.retain(|one| !not_run.contains(&one.id));
+            }
+            let movement = report::between_verdicts(&a, &b);
             (vec![("verdicts".to_owned(), movement)], Vec::new())
         }
     };
     whole.extend(stale);
     let detail = if args.all { Detail::All } else { Detail::Farthest };
-    print(&report::diff(&movements, &whole, detail))?;
+    print(&report::diff(&movements, &whole, &not_run, detail))?;
     let beyond = !whole.is_empty() || movements.iter().any(|(_, movement)| movement.is_beyond());
     Ok(if beyond { Exit::Unexpected } else { Exit::AsExpected })
 }
@@ -101,13 +114,43 @@ impl Side {
         files.into_iter().map(read).collect::<Result<_, CliError>>().map(Self::Tables)
     }
 
-    /// Judged by the reference of this study, if it has not been.
-    fn verdicts<'s>(self, study: impl Fn() -> Result<&'s Study, CliError>) -> Result<Vec<Standing>, CliError> {
-        Ok(match self {
-            Self::Verdicts(verdicts) => verdicts,
-            Self::Tables(tables) => judge_tables(study()?, &tables).iter().map(report::standing).collect(),
-        })
+    /// Its experiments; one may be there several times.
+    fn ids(&self) -> Box<dyn Iterator<Item = &str> + '_> {
+        match self {
+            Self::Tables(tables) => Box::new(tables.keys().map(String::as_str)),
+            Self::Verdicts(verdicts) => Box::new(verdicts.iter().map(experiment_of)),
+        }
     }
+
+    /// Leaves out the experiments that do not match.
+    fn keep(&mut self, pattern: &str) {
+        match self {
+            Self::Tables(tables) => tables.retain(|id, _| matches(pattern, id)),
+            Self::Verdicts(verdicts) => verdicts.retain(|one| matches(pattern, experiment_of(one))),
+        }
+    }
+
+    /// Judged by the reference of this study, if it has not been; entries that need a table which is not there are put with those that were
+    /// `not_run`.
+    fn verdicts<'s>(
+        self,
+        study: impl Fn() -> Result<&'s Study, CliError>,
+        not_run: &mut Vec<String>,
+    ) -> Result<Vec<Standing>, CliError> {
+        let tables = match self {
+            Self::Verdicts(verdicts) => return Ok(verdicts),
+            Self::Tables(tables) => tables,
+        };
+        let judged = judge_tables(study()?, &tables);
+        let lacks_table = |one: &&Judged| one.verdict == Verdict::Missing && one.found.contains(NOT_RUN);
+        not_run.extend(judged.iter().filter(lacks_table).map(|one| one.id.clone()));
+        Ok(judged.iter().map(report::standing).collect())
+    }
+}
+
+/// The experiment of an entry.
+fn experiment_of(one: &Standing) -> &str {
+    one.id.split_once('/').map_or(one.id.as_str(), |(experiment, _)| experiment)
 }
 
 /// Where the tables are that a folder stands for: in it, or in its `results/`.

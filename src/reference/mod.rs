@@ -58,3 +58,4 @@ pub use self_test::{Flaw, SelfTestFailure, self_test};
 pub(crate) use text::symbol;
 pub use verdict::{Comparison, Judged, Kind, Moved, Part, Role, Verdict};
 pub use view::{TableState, Tables};
+pub(crate) use view::NOT_RUN;

@@ -33,6 +33,9 @@ pub enum TableState<'a> {
 /// Tables by experiment; one that is not listed has not been run.
 pub type Tables<'a> = BTreeMap<String, TableState<'a>>;
 
+/// What is said of an experiment that has no table.
+pub(crate) const NOT_RUN: &str = "has not been run";
+
 /// Why there is no number.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Absence {
@@ -411,7 +414,7 @@ impl<'a> View<'a> {
             Some(TableState::Present(table)) => Ok(table),
             Some(TableState::Stale) => Err(Absence::Broken(format!("the table of `{id}` is stale: run it again"))),
             Some(TableState::Failed(reason)) => Err(Absence::Broken(format!("`{id}` failed: {reason}"))),
-            Some(TableState::NotRun) | None => Err(Absence::Broken(format!("`{id}` has not been run"))),
+            Some(TableState::NotRun) | None => Err(Absence::Broken(format!("`{id}` {NOT_RUN}"))),
             Some(TableState::NoExperiment) => {
                 Err(Absence::Broken(format!("there is no experiment `{id}`: its file was renamed or is not there")))
             }

@@ -1,5 +1,7 @@
 //! Two runs side by side: which numbers moved, and whether by more than they are uncertain.
 
+use std::collections::BTreeSet;
+
 use super::movement::{Moved, Movement};
 use crate::text::number::{quantity, signed, significant};
 use crate::text::words::counted;
@@ -17,9 +19,9 @@ pub enum Detail {
 }
 
 /// For the console: what moved in each experiment (or file), then a line that says it all. `whole` names experiments whose tables cannot be
-/// compared as they are, with what is the matter.
+/// compared as they are, with what is the matter; `not_run` are entries of experiments without a table, which are no difference.
 #[must_use]
-pub fn diff(movements: &[(String, Movement)], whole: &[String], detail: Detail) -> String {
+pub fn diff(movements: &[(String, Movement)], whole: &[String], not_run: &[String], detail: Detail) -> String {
     let description = if detail == Detail::All { usize::MAX } else { TOLD };
     let mut text = String::new();
     for (name, movement) in movements.iter().filter(|(_, movement)| !movement.is_none()) {
@@ -39,13 +41,29 @@ pub fn diff(movements: &[(String, Movement)], whole: &[String], detail: Detail) 
     let moved = count(|movement| movement.moved.len());
     let others = count(|movement| movement.gone.len() + movement.new.len() + movement.judged_differently.len());
     text += &format!(
-        "{}: {} the same to the bit, {} moved within their uncertainty, {beyond} beyond it; {} otherwise.\n",
+        "{}: {} the same to the bit, {} moved within their uncertainty, {beyond} beyond it; {} otherwise{}.\n",
         counted(count(|movement| movement.same) + moved, "number", "numbers"),
         count(|movement| movement.same),
         moved - beyond,
         counted(others + whole.len(), "difference", "differences"),
+        not_compared(not_run),
     );
     text
+}
+
+/// `; not compared: 379 entries of 95 experiments that have not been run`.
+fn not_compared(not_run: &[String]) -> String {
+    if not_run.is_empty() {
+        return String::new();
+    }
+    let entries: BTreeSet<&String> = not_run.iter().collect();
+    let experiments: BTreeSet<&str> = not_run.iter().filter_map(|id| Some(id.split_once('/')?.0)).collect();
+    format!(
+        "; not compared: {} of {} that {} not been run",
+        counted(entries.len(), "entry", "entries"),
+        counted(experiments.len(), "experiment", "experiments"),
+        if experiments.len() == 1 { "has" } else { "have" }
+    )
 }
 
 fn list<T>(heading: &str, all: &[T], description: usize, line: impl Fn(&T) -> String) -> String {

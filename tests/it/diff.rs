@@ -122,3 +122,18 @@ fn a_table_by_itself_is_sent_back_for_its_folder() {
         crate::desk::shotdamp(&desk, &["diff", table.to_str().unwrap(), desk.layout.results().to_str().unwrap()]);
     assert!(said.code == 2 && said.err.contains("is a single table: name the folder"), "{}", said.err);
 }
+
+#[test]
+fn after_running_one_experiment_the_others_are_no_differences() {
+    let desk = simulated();
+    assert_eq!(shotdamp(&desk, &[]).code, 0);
+    fs::remove_file(desk.layout.path("results/ch3-stop.parquet")).unwrap();
+    let said = shotdamp(&desk, &["diff"]);
+    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+    let end = "0 differences otherwise; not compared: 1 entry of 1 experiment that has not been run.\n";
+    assert!(said.out.ends_with(end) && !said.out.contains("nothing"), "{}", said.out);
+    let one = shotdamp(&desk, &["diff", "--only", "ch3-gap"]);
+    assert!(one.code == 0 && one.out.ends_with("0 differences otherwise.\n"), "{}{}", one.out, one.err);
+    let typo = shotdamp(&desk, &["diff", "--only", "ch3-gab"]);
+    assert!(typo.code == 2 && typo.err.contains("no experiment matches `ch3-gab`"), "{}", typo.err);
+}
