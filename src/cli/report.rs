@@ -4,7 +4,7 @@ use super::args::ReportArgs;
 use super::destination::Destination;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{print, print_error, print_unread};
+use super::output::{print, print_error, print_progress, print_unread};
 use super::select::open;
 use crate::report::{Html, html, judge_all};
 use crate::study::Layout;
@@ -19,7 +19,17 @@ pub(super) fn report(layout: &Layout, args: &ReportArgs) -> Result<Exit, CliErro
         return Err(CliError::NoExperiments);
     }
     print_unread(&study.unread);
-    let Html { text, problems } = html(&study, &judge_all(&study));
+    let judgement = judge_all(&study);
+    let missing =
+        study.items.iter().filter(|item| !judgement.tables.contains_key(&item.source.experiment.id.0)).count();
+    if missing > 0 {
+        let all = counted(study.items.len(), "experiment", "experiments");
+        let [verb, whose, what] = if missing == 1 { ["has", "its", "it"] } else { ["have", "their", "them"] };
+        print_progress(&format!(
+            "warning: {missing} of {all} {verb} no table that is up to date: {whose} entries are missing in the file; `shotdamp run` makes {what}\n"
+        ));
+    }
+    let Html { text, problems } = html(&study, &judgement);
     for problem in &problems {
         print_error(&format!("error: {problem}\n"));
     }

@@ -37,6 +37,17 @@ fn one_file_holds_every_page_figure_and_entry_and_asks_for_nothing() {
 }
 
 #[test]
+fn a_file_of_missing_tables_is_announced() {
+    let desk = Desk::new();
+    assert_eq!(shotdamp(&desk, &["run", "--quiet", "ch3-gap"]).err, "");
+    let file = desk.layout.path("study.html");
+    let said = shotdamp(&desk, &["report", "--html", file.to_str().unwrap()]);
+    assert_eq!(said.code, 0);
+    let warning = "warning: 1 of 2 experiments has no table that is up to date: its entries are missing in the file; `shotdamp run` makes it\n";
+    assert_eq!(said.err, warning);
+}
+
+#[test]
 fn what_a_study_says_is_never_markup() {
     let desk = Desk::new();
     let hostile = "\"<script>alert(1)</script> </title> {body} <b onclick=alert(1)>x\"";
