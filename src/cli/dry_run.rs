@@ -3,7 +3,7 @@
 use super::args::{Args, RunArgs};
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{print, print_unread, simulations};
+use super::output::{print, print_error, print_unread, simulations};
 use super::select::{Found, choose};
 use super::thresholds;
 use super::update::todo;
@@ -35,16 +35,19 @@ pub(super) fn dry_run(layout: &Layout, found: Found, args: &RunArgs, common: &Ar
         }
         total.add(&extent, threads);
     }
-    text += &format!(
-        "{} of {} would be simulated{}\n",
-        total.simulated,
-        counted(chosen.count(), "experiment", "experiments"),
-        total.rest()
-    );
+    if chosen.count() > 0 {
+        text += &format!(
+            "{} of {} would be simulated{}\n",
+            total.simulated,
+            counted(chosen.count(), "experiment", "experiments"),
+            total.rest()
+        );
+    }
     if let Some(ahead) = total.time(threads) {
         text += &format!("{ahead} on {threads} threads\n");
     }
     print(&text)?;
+    print_error(&chosen.left_out());
     Ok(if chosen.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })
 }
 

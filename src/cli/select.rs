@@ -191,6 +191,25 @@ impl<'a> Chosen<'a> {
         planned.chain(self.known.iter().map(|known| known.heading.id.0.as_str()))
     }
 
+    /// What files with mistakes leave out, a line each kind; nothing where there are none.
+    pub fn left_out(&self) -> String {
+        let of = |folder: &str| -> Vec<&str> {
+            self.unread.iter().map(|one| one.file()).filter(|file| file.starts_with(folder)).map(stem).collect()
+        };
+        let blind = self.unread.iter().any(|unread| unread.file() == ASSUMPTIONS);
+        let (experiments, references) = (of("experiments/"), of("reference/"));
+        let mut text = String::new();
+        if blind {
+            text += &format!("Left out: all experiments, because {ASSUMPTIONS} has mistakes.\n");
+        } else if !experiments.is_empty() {
+            text += &format!("Left out, because of mistakes in their files: {}.\n", experiments.join(", "));
+        }
+        if !references.is_empty() {
+            text += &format!("Not judged, because of mistakes in their references: {}.\n", references.join(", "));
+        }
+        text
+    }
+
     /// The number of experiments.
     pub fn count(&self) -> usize {
         self.items.len() + self.known.len()

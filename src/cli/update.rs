@@ -147,6 +147,7 @@ fn take_snapshot(study: &Study, published: Published) -> Result<(), CliError> {
     }
     let Published { experiments, of_the_study, .. } = published;
     let kept = study.known.keys().map(String::as_str).collect();
+    print_error(&chosen.left_out());
     Ok(Snapshot::take(&study.layout, &study.texts, &study.sheet, &kept, experiments, &of_the_study)?)
 }
 
