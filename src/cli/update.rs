@@ -6,11 +6,13 @@ use super::args::{Args, Choice, RunArgs};
 use super::dry_run::dry_run;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{print, print_error, print_unread, print_warnings};
+use super::output::{print, print_error, print_progress, print_unread, print_warnings};
 use super::select::{Chosen, Found, choose, matched};
 use super::simulate::{How, Ran, held, print_failures, simulate};
 use crate::report::{INDEX, Judgement, Published, doubts, judge_all, publish, report_of, summary_of};
-use crate::study::{Item, Layout, Lock, RunTimes, STUDY, Snapshot, State, Study, remove_journals, save};
+use crate::study::{
+    Item, Layout, Lock, RunTimes, STUDY, Snapshot, State, Study, remove_journals, save, transient_left,
+};
 use crate::text::words::counted;
 
 /// Brings the chosen experiments up to date.
@@ -38,6 +40,15 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     print_unread(chosen.unread.iter().copied());
     print_warnings(study.warnings().as_ref());
     let todo = todo(&chosen, args);
+    // In a run of the whole study there would be dozens of them.
+    if !args.choice.patterns.is_empty() {
+        for item in &todo {
+            let experiment = &item.source.experiment;
+            if let Some(warning) = transient_left(experiment, &study.sheet.assumptions()) {
+                print_progress(&format!("warning: {}: {warning}\n", experiment.id));
+            }
+        }
+    }
     let how = How { threads: common.threads(), quiet: common.quiet, shard: None, from_scratch: args.force };
     let Ran { restored, unsaved } =
         simulate(layout, &todo, how, |item, finished| save(layout, item, finished).map(|_| ()))?;
@@ -136,6 +147,7 @@ pub(super) fn conclude(study: &Study, choice: &Choice, done: Done) -> Result<Exi
     let folder = |id| study.known.get(id).map(|known| known.folder.as_str()).or_else(|| planned(id));
     let page = if tables_only { String::new() } else { page_to_open(&study.layout, &chosen.ids, folder) };
     print(&(verdicts_of(&judgement, &chosen.ids) + &page))?;
+    print_error(&chosen.left_out());
     Ok(exit)
 }
 
@@ -147,7 +159,6 @@ fn take_snapshot(study: &Study, published: Published) -> Result<(), CliError> {
     }
     let Published { experiments, of_the_study, .. } = published;
     let kept = study.known.keys().map(String::as_str).collect();
-    print_error(&chosen.left_out());
     Ok(Snapshot::take(&study.layout, &study.texts, &study.sheet, &kept, experiments, &of_the_study)?)
 }
 

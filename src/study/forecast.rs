@@ -55,6 +55,17 @@ pub fn forecast(experiment: &Experiment, assumptions: &Assumptions) -> Vec<Strin
         .collect()
 }
 
+/// The warning that averages begin while much of the free vibration is left, with the first case that it is about.
+#[must_use]
+pub fn transient_left(experiment: &Experiment, assumptions: &Assumptions) -> Option<String> {
+    let begun = ThreadTime::now();
+    experiment.cases.iter().take_while(|_| begun.elapsed() <= PATIENCE).find_map(|case| {
+        let recipes = experiment.recipe_of(case).and_then(|recipe| experiment.recipes_in(&recipe)).unwrap_or_default();
+        let scene = recipes.first()?.resolve(assumptions).ok()?;
+        transient(experiment, &scene).map(|warning| of_case(case, warning))
+    })
+}
+
 /// A warning with the case that it is about.
 fn of_case(case: &Case, warning: String) -> String {
     let place = case.describe();
