@@ -106,6 +106,7 @@ pub(crate) fn judge_entry(
         expected: entry.expected,
         found: judgement.found,
         comparison: judgement.comparison,
+        printed_unit: judgement.printed_unit,
         parts: judgement.parts,
         fit: judgement.fit,
         explanation: entry.explanation.clone(),
@@ -131,6 +132,7 @@ struct Judgement {
     verdict: Verdict,
     found: String,
     comparison: Option<Comparison>,
+    printed_unit: String,
     parts: Vec<Part>,
     fit: Option<Fit>,
     blocked_by: Vec<String>,
@@ -144,6 +146,7 @@ impl Judgement {
             verdict,
             found: String::new(),
             comparison: None,
+            printed_unit: String::new(),
             parts: Vec::new(),
             fit: None,
             blocked_by: Vec::new(),
@@ -175,11 +178,12 @@ fn numbers(view: &View<'_>, peak: &PrintedPeak, by_hand: Option<&Tolerance>, fit
     let found: Vec<String> = judged.iter().map(|(name, judgement)| format!("{name} {}", judgement.found)).collect();
     let blocked_by: BTreeSet<String> =
         judged.iter().flat_map(|(_, judgement)| judgement.blocked_by.iter().cloned()).collect();
-    let parts = judged.into_iter().map(|(name, Judgement { verdict, found, comparison, .. })| Part {
+    let parts = judged.into_iter().map(|(name, Judgement { verdict, found, comparison, printed_unit, .. })| Part {
         name: name.into(),
         verdict,
         found,
         comparison,
+        printed_unit,
     });
     let parts = parts.collect();
     Judgement {
@@ -284,7 +288,16 @@ fn value(
         found += &format!(", most of it `{}`", blocked_by.join("`, `"));
     }
     let robust = robust(&moved);
-    Ok(Judgement { found, comparison: Some(comparison), blocked_by, robust, moved, ..Judgement::of(verdict) })
+    let printed_unit = published.unit().to_owned();
+    Ok(Judgement {
+        found,
+        comparison: Some(comparison),
+        printed_unit,
+        blocked_by,
+        robust,
+        moved,
+        ..Judgement::of(verdict)
+    })
 }
 
 /// What each assumption adds to u_input², largest first: the square of half the range that it gives the value.

@@ -64,6 +64,11 @@ fn unit(symbol: &str) -> Option<(&'static str, f64)> {
     })
 }
 
+/// A number in the units of the tables, SI, in the unit in which it is published: 0.0071 is 7.1 in mm/s.
+pub(crate) fn in_printed_unit(number: f64, symbol: &str) -> f64 {
+    unit(symbol).map_or(number, |(_, worth)| number / worth)
+}
+
 /// Units in which a number may be printed that is compared with one in `symbol`.
 pub(super) fn units_beside(symbol: &str) -> Vec<&str> {
     let of_kind = UNITS.iter().find(|(_, units)| units.iter().any(|(known, _)| *known == symbol));

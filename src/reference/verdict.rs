@@ -112,6 +112,9 @@ pub struct Part {
     pub found: String,
     /// Against the published number; none where there is nothing to compare.
     pub comparison: Option<Comparison>,
+    /// The unit in which the number is published; empty if it is dimensionless.
+    #[serde(default)]
+    pub printed_unit: String,
 }
 
 /// An entry with its verdict, ready for a report: plain data, no tables needed.
@@ -136,6 +139,9 @@ pub struct Judged {
     pub found: String,
     /// For values.
     pub comparison: Option<Comparison>,
+    /// The unit in which a value is published; empty if it is dimensionless.
+    #[serde(default)]
+    pub printed_unit: String,
     /// For an entry of several numbers: each with its own verdict. The entry's is the worst of them.
     pub parts: Vec<Part>,
     /// For curves and shapes.
@@ -205,8 +211,16 @@ pub struct Moved {
 impl Judged {
     /// Its numbers against the published ones, each with the name of its part; empty for the one number of a value.
     pub fn comparisons(&self) -> impl Iterator<Item = (&str, &Comparison)> {
-        let parts = self.parts.iter().filter_map(|part| Some((part.name.as_str(), part.comparison.as_ref()?)));
-        self.comparison.iter().map(|comparison| ("", comparison)).chain(parts)
+        self.comparisons_with_units().map(|(name, comparison, _)| (name, comparison))
+    }
+
+    /// The same, each with the unit in which its number is published.
+    pub fn comparisons_with_units(&self) -> impl Iterator<Item = (&str, &Comparison, &str)> {
+        let parts = self
+            .parts
+            .iter()
+            .filter_map(|part| Some((part.name.as_str(), part.comparison.as_ref()?, part.printed_unit.as_str())));
+        self.comparison.iter().map(|comparison| ("", comparison, self.printed_unit.as_str())).chain(parts)
     }
 
     /// Whether it would still be `fitted` at both of these relative errors, which are 0 for a claim that holds.

@@ -1,6 +1,6 @@
 //! What the study says beside what came out.
 
-use crate::reference::{Comparison, Judged, MotionBehind, Moved, Price, Role, Verdict};
+use crate::reference::{Comparison, Judged, MotionBehind, Moved, Price, Role, Verdict, in_printed_unit};
 use crate::text::number::{compact, signed, significant};
 
 use super::markdown::{Align, MarkdownTable, first_sentence, one_line};
@@ -131,10 +131,10 @@ fn verdict(one: &Judged) -> String {
     if one.role == Role::HeldOut {
         text += ", held out";
     }
-    for (name, comparison) in one.comparisons() {
+    for (name, comparison, unit) in one.comparisons_with_units() {
         if let Some(width) = comparison.tolerance_by_hand {
             let name = if name.is_empty() { String::new() } else { format!(" of the {name}") };
-            text += &format!("; tolerance{name} set by hand: ±{}", compact(width, 3));
+            text += &format!("; tolerance{name} set by hand: {}", plus_minus(width, 3, unit));
         }
     }
     text
@@ -278,7 +278,8 @@ fn by_hand(judged: &[Judged]) -> String {
 
 /// The tolerance that was set by hand, with its reason, and whether it is looser than the one that it replaces.
 pub(super) fn tolerance(judged: &Judged) -> Option<String> {
-    let widths: Vec<String> = judged.comparisons().filter_map(|(name, comparison)| width(name, comparison)).collect();
+    let widths: Vec<String> =
+        judged.comparisons_with_units().filter_map(|(name, comparison, unit)| width(name, comparison, unit)).collect();
     if widths.is_empty() && judged.tolerance_reason.is_none() {
         return None;
     }
@@ -287,12 +288,18 @@ pub(super) fn tolerance(judged: &Judged) -> Option<String> {
     Some(widths + &reason)
 }
 
-fn width(name: &str, comparison: &Comparison) -> Option<String> {
+/// A width of the tables in the unit in which its number is published: `±7.1 mm/s`.
+pub(super) fn plus_minus(width: f64, digits: usize, unit: &str) -> String {
+    format!("±{} {unit}", compact(in_printed_unit(width, unit), digits)).trim_end().to_owned()
+}
+
+fn width(name: &str, comparison: &Comparison, unit: &str) -> Option<String> {
     let width = comparison.tolerance_by_hand?;
     let derived = comparison.derived_tolerance();
     let beside = if width > derived { "**loosened** from" } else { "narrower than" };
     let name = if name.is_empty() { String::new() } else { format!("{name} ") };
-    Some(format!("{name}±{}, {beside} the derived ±{}", compact(width, 6), significant(derived, 2)))
+    let derived = format!("±{} {unit}", significant(in_printed_unit(derived, unit), 2));
+    Some(format!("{name}{}, {beside} the derived {}", plus_minus(width, 6, unit), derived.trim_end()))
 }
 
 /// The entry's explanation, or a plain word that there is none.

@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use crate::reference::{Comparison, Fit, Judged, Verdict};
 use crate::text::number::{compact, signed, significant};
 
+use super::comparison::plus_minus;
 use super::markdown::one_line;
 
 /// All that a check found.
@@ -75,7 +76,9 @@ fn farthest(one: &Judged) -> f64 {
 pub(super) fn lines(one: &Judged) -> Vec<(&'static str, String)> {
     let mut lines =
         vec![("the study", one_line(&one.statement)), ("where", one_line(&one.place)), ("found", one_line(&one.found))];
-    lines.extend(one.comparisons().map(|(name, comparison)| ("off by", distance(name, comparison))));
+    lines.extend(
+        one.comparisons_with_units().map(|(name, comparison, unit)| ("off by", distance(name, comparison, unit))),
+    );
     lines.extend(one.fit.iter().map(|fit| ("off by", departure(fit))));
     lines.push(("again", rerun(one)));
     lines.retain(|(_, line)| !line.is_empty());
@@ -87,10 +90,10 @@ pub(super) fn rerun(one: &Judged) -> String {
     format!("shotdamp run --force {}", one.experiment)
 }
 
-fn distance(name: &str, comparison: &Comparison) -> String {
+fn distance(name: &str, comparison: &Comparison, unit: &str) -> String {
     let name = if name.is_empty() { String::new() } else { format!("{name}: ") };
     let allowed = match comparison.tolerance_by_hand {
-        Some(width) => format!("±{} set by hand is allowed", compact(width, 3)),
+        Some(width) => format!("{} set by hand is allowed", plus_minus(width, 3, unit)),
         None => "2 u_val are allowed".to_owned(),
     };
     format!(

@@ -26,6 +26,7 @@ fn judged(id: &str, verdict: Verdict, expected: Verdict) -> Judged {
         fit: None,
         explanation: "Nobody\nknows.".into(),
         blocked_by: Vec::new(),
+        printed_unit: String::new(),
         tolerance_reason: None,
         robust: None,
         moved: Vec::new(),
@@ -331,7 +332,6 @@ fn committed_reports_are_those_that_would_be_generated() {
 }
 
 #[test]
-#[test]
 fn the_reports_of_one_experiment_are_checked_without_those_of_others() {
     let desk = simulated();
     assert_eq!(shotdamp(&desk, &[]).code, 0);
@@ -367,6 +367,7 @@ fn a_run_says_which_experiments_mistakes_leave_out() {
     assert!(gap.out.is_empty() && gap.err.contains("Left out"), "{}{}", gap.out, gap.err);
 }
 
+#[test]
 fn a_check_of_a_file_that_cannot_be_read_counts_no_entries() {
     let desk = simulated();
     desk.put("experiments/ch3/ch3-gap.yaml", "title: [\n");

@@ -42,6 +42,7 @@ fn entry(id: &str, verdict: Verdict) -> Judged {
         fit: None,
         explanation: String::new(),
         blocked_by: Vec::new(),
+        printed_unit: String::new(),
         tolerance_reason: None,
         robust: Some((5, 6)),
         moved: Vec::new(),
@@ -294,6 +295,15 @@ fn the_rule_of_agreement_is_said_once_and_is_the_one_that_judges() {
 fn a_tolerance_by_hand_stands_beside_the_verdict() {
     let row = page_of(None, &judged()).lines().find(|line| line.contains("entry-parting")).unwrap().to_owned();
     assert!(row.contains("tolerance set by hand: ±0.3"), "{row}");
+    // The study prints mm/s, the table holds m/s.
+    let mut judged = judged();
+    for one in judged.iter_mut().filter(|one| one.id.ends_with("parting")) {
+        one.printed_unit = "mm/s".into();
+    }
+    let page = page_of(None, &judged);
+    let row = page.lines().find(|line| line.contains("entry-parting")).unwrap();
+    assert!(row.contains("tolerance set by hand: ±300 mm/s"), "{row}");
+    assert!(page.contains("±300 mm/s, "), "{page}");
 }
 
 #[test]
