@@ -40,66 +40,112 @@ pub(super) fn png(svg: &str, density: f32) -> Result<Vec<u8>, RasterError> {
     encode(&picture)
 }
 
-/// As a PNG of at most 256 colours where the picture has no more, after rounding each channel to [`SHADES`] shades: a curve is
-/// a few colours and the shades at its edges. The file takes a third of one with all shades.
+/// As a PNG of at most 256 colours where those of the picture lie close enough to as many of them: a curve is a few colours and the
+/// shades at its edges. The file takes a third of one with all shades.
 fn encode(picture: &tiny_skia::Pixmap) -> Result<Vec<u8>, RasterError> {
     let failed = |error: png::EncodingError| RasterError::Png(error.to_string());
-    let colors: Vec<[u8; 3]> =
-        picture.pixels().iter().map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]).collect();
-    for shades in SHADES {
-        let Some((palette, indices)) = indexed(&colors, shades) else { continue };
-        let mut bytes = Vec::new();
-        let mut encoder = png::Encoder::new(&mut bytes, picture.width(), picture.height());
-        encoder.set_color(png::ColorType::Indexed);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_palette(palette);
-        encoder.set_deflate_compression(png::DeflateCompression::Level(LEVEL));
-        encoder.set_filter(png::Filter::NoFilter);
-        let mut writer = encoder.write_header().map_err(failed)?;
-        writer.write_image_data(&indices).map_err(failed)?;
-        writer.finish().map_err(failed)?;
-        return Ok(bytes);
-    }
-    picture.encode_png().map_err(|error| RasterError::Png(error.to_string()))
+    let colors: Vec<Color> = picture.pixels().iter().map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]).collect();
+    let by_count = by_count(&colors);
+    let Some(palette) = ERRORS.iter().find_map(|error| palette(&by_count, colors.len(), *error)) else {
+        return picture.encode_png().map_err(|error| RasterError::Png(error.to_string()));
+    };
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, picture.width(), picture.height());
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_palette(palette.concat());
+    encoder.set_deflate_compression(png::DeflateCompression::Level(LEVEL));
+    encoder.set_filter(png::Filter::NoFilter);
+    let mut writer = encoder.write_header().map_err(failed)?;
+    writer.write_image_data(&indices(&colors, &by_count, &palette)).map_err(failed)?;
+    writer.finish().map_err(failed)?;
+    Ok(bytes)
 }
+
+/// Red, green and blue.
+type Color = [u8; 3];
 
 /// The highest level, 9, takes six times as long as all else of a picture's encoding, for files that are a fifth smaller.
 const LEVEL: u8 = 5;
 
-/// How many shades a channel is rounded to; the first with which 256 colours suffice.
-const SHADES: [u32; 5] = [64, 32, 20, 16, 12];
+/// How far a channel of a pixel may be off, of 255; the first with which 256 colours suffice.
+const ERRORS: [u8; 8] = [2, 4, 6, 8, 12, 16, 24, 32];
 
-/// The palette and an index a pixel; `None` if the palette would be too long.
-fn indexed(colors: &[[u8; 3]], shades: u32) -> Option<(Vec<u8>, Vec<u8>)> {
-    let rounded = |channel: u8| {
-        let level = (u32::from(channel) * (shades - 1) + 127) / 255;
-        u8::try_from((level * 255 + (shades - 1) / 2) / (shades - 1)).unwrap_or(u8::MAX)
-    };
-    let table: Vec<u8> = (0..=u8::MAX).map(rounded).collect();
-    let mut known = std::collections::HashMap::<[u8; 3], u8>::new();
-    let mut palette = Vec::new();
-    let mut indices = Vec::with_capacity(colors.len());
-    // Most pixels are as the one before.
-    let mut before: Option<([u8; 3], u8)> = None;
-    for color in colors {
-        if let Some((same, index)) = before
-            && same == *color
-        {
-            indices.push(index);
+/// A colour of a larger share of the picture than one in so many pixels is kept as it is: the fill of a band, a line, the ink.
+const LARGE: usize = 1000;
+/// The most colours that are kept for that.
+const KEPT: usize = 128;
+
+/// The colours of a picture, the most frequent first.
+fn by_count(colors: &[Color]) -> Vec<(Color, usize)> {
+    let mut counts = std::collections::BTreeMap::<Color, usize>::new();
+    for run in colors.chunk_by(|a, b| a == b) {
+        *counts.entry(run[0]).or_default() += run.len();
+    }
+    let mut by_count: Vec<_> = counts.into_iter().collect();
+    by_count.sort_by_key(|(color, count)| (std::cmp::Reverse(*count), *color));
+    by_count
+}
+
+/// Colours of the picture, the most frequent first, such that none of its `pixels` is off by more than `error`; `None` if there would be
+/// too many.
+fn palette(by_count: &[(Color, usize)], pixels: usize, error: u8) -> Option<Vec<Color>> {
+    let mut palette: Vec<Color> = Vec::new();
+    for (color, count) in by_count {
+        let is_kept = palette.len() < KEPT && count * LARGE > pixels;
+        if !is_kept && palette.iter().any(|one| distance(*one, *color) <= error) {
             continue;
         }
-        let rounded = color.map(|channel| table[usize::from(channel)]);
-        let index = match known.get(&rounded) {
-            Some(index) => *index,
-            None => {
-                let index = u8::try_from(known.len()).ok()?;
-                palette.extend(rounded);
-                known.insert(rounded, index);
-                index
-            }
-        };
-        before = Some((*color, index));
-        indices.push(index);
+        if palette.len() > usize::from(u8::MAX) {
+            return None;
+        }
+        palette.push(*color);
     }
-    Some((palette, indices))
+    Some(palette)
+}
+
+/// Of each pixel the colour of the palette that is nearest to its own.
+fn indices(colors: &[Color], by_count: &[(Color, usize)], palette: &[Color]) -> Vec<u8> {
+    let nearest = |color: Color| (0..=u8::MAX).zip(palette).min_by_key(|(_, one)| distance(**one, color));
+    let known: std::collections::HashMap<Color, u8> =
+        by_count.iter().filter_map(|(color, _)| Some((*color, nearest(*color)?.0))).collect();
+    let mut indices = Vec::with_capacity(colors.len());
+    for run in colors.chunk_by(|a, b| a == b) {
+        indices.resize(indices.len() + run.len(), known.get(&run[0]).copied().unwrap_or_default());
+    }
+    indices
+}
+
+/// Largest difference of a channel.
+fn distance(a: Color, b: Color) -> u8 {
+    a.into_iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A gradient of many colours, and two tints side by side that differ in few shades.
+    #[test]
+    fn the_tints_of_bands_keep_their_colours_beside_a_map_of_many_colours() {
+        let tints = [[206, 222, 236], [206, 229, 219]];
+        let mut colors: Vec<Color> = (0..=255).flat_map(|a| (0..=255).map(move |b| [a, b, a ^ b])).collect();
+        colors.extend([tints[0]; 2000].into_iter().chain([tints[1]; 2000]));
+        let by_count = by_count(&colors);
+        let palette = ERRORS.iter().find_map(|error| palette(&by_count, colors.len(), *error));
+        // So many colours do not fit: the picture keeps all of them.
+        assert_eq!(palette, None);
+
+        let mut colors: Vec<Color> = (0..=255).map(|a| [a, 255 - a, a / 2]).collect();
+        colors.extend((0..=255).map(|a| [a, a, 200]));
+        colors.extend([tints[0]; 2000].into_iter().chain([tints[1]; 2000]));
+        let by_count = super::by_count(&colors);
+        let palette = ERRORS.iter().find_map(|error| super::palette(&by_count, colors.len(), *error)).unwrap();
+        assert!(palette.len() <= 256 && palette[..2].contains(&tints[0]) && palette[..2].contains(&tints[1]));
+        for (color, index) in colors.iter().zip(indices(&colors, &by_count, &palette)) {
+            let shown = palette[usize::from(index)];
+            assert!(distance(shown, *color) <= 4, "{color:?} became {shown:?}");
+            assert!(!tints.contains(color) || shown == *color, "{color:?} became {shown:?}");
+        }
+    }
 }
