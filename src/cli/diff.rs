@@ -26,14 +26,14 @@ enum Side {
 pub(super) fn diff(layout: &Layout, args: &DiffArgs) -> Result<Exit, CliError> {
     let a = args.a.clone().unwrap_or_else(|| layout.path(VERDICTS));
     let b = args.b.clone().unwrap_or_else(|| layout.results());
-    let (mut before, mut now) = (Side::read(&a)?, Side::read(&b)?);
+    let (before, now) = (Side::read(&a)?, Side::read(&b)?);
     if let Some(pattern) = &args.only {
         let ids: BTreeSet<String> = before.ids().chain(now.ids()).map(str::to_owned).collect();
         if !ids.iter().any(|id| matches(pattern, id)) {
             return Err(no_match(pattern, &ids.iter().map(String::as_str).collect()));
         }
-        [&mut before, &mut now].into_iter().for_each(|side| side.keep(pattern));
     }
+    let is_asked_for = |id: &str| args.only.as_deref().is_none_or(|pattern| matches(pattern, id));
     let opened = OnceCell::new();
     let study = || match opened.get() {
         Some(study) => Ok(study),
@@ -44,17 +44,22 @@ pub(super) fn diff(layout: &Layout, args: &DiffArgs) -> Result<Exit, CliError> {
         if let Side::Tables(tables) = side
             && place_of(&folder_of_tables(path)) == place_of(&layout.results())
         {
-            stale.extend(stale_among(study()?, tables));
+            stale.extend(stale_among(study()?, |id| tables.contains_key(id) && is_asked_for(id)));
         }
     }
     let mut not_run = Vec::new();
     let (movements, mut whole) = match (before, now) {
-        (Side::Tables(a), Side::Tables(b)) => of_tables(&a, &b),
+        (Side::Tables(mut a), Side::Tables(mut b)) => {
+            [&mut a, &mut b].into_iter().for_each(|side| side.retain(|id, _| is_asked_for(id)));
+            of_tables(&a, &b)
+        }
         (a, b) => {
             let (mut a, mut b) = (a.verdicts(study, &mut not_run)?, b.verdicts(study, &mut not_run)?);
+            // Only now: their entries may read tables of other experiments.
             for side in [&mut a, &mut b] {
-                side.retain(|one| !not_run.contains(&one.id));
+                side.retain(|one| !not_run.contains(&one.id) && is_asked_for(experiment_of(&one.id)));
             }
+            not_run.retain(|id| is_asked_for(experiment_of(id)));
             let movement = report::between_verdicts(&a, &b);
             (vec![("verdicts".to_owned(), movement)], Vec::new())
         }
@@ -81,13 +86,11 @@ fn of_tables(a: &BTreeMap<String, Table>, b: &BTreeMap<String, Table>) -> (Vec<(
 }
 
 /// Those of the study's own tables that say nothing of the inputs as they are now.
-fn stale_among(study: &Study, tables: &BTreeMap<String, Table>) -> Vec<String> {
+fn stale_among(study: &Study, is_meant: impl Fn(&str) -> bool) -> Vec<String> {
     let says_nothing = |reason: &Reason| matches!(reason, Reason::Changed { .. } | Reason::MoreChanged { .. });
     let is_stale = |item: &&Item| matches!(&item.state, State::Stale(reasons) if reasons.iter().any(says_nothing));
     let ids = study.items.iter().filter(is_stale).map(|item| &item.source.experiment.id);
-    ids.filter(|id| tables.contains_key(&id.0))
-        .map(|id| format!("{id}: its table is stale; shotdamp run {id}"))
-        .collect()
+    ids.filter(|id| is_meant(&id.0)).map(|id| format!("{id}: its table is stale; shotdamp run {id}")).collect()
 }
 
 impl Side {
@@ -118,15 +121,7 @@ impl Side {
     fn ids(&self) -> Box<dyn Iterator<Item = &str> + '_> {
         match self {
             Self::Tables(tables) => Box::new(tables.keys().map(String::as_str)),
-            Self::Verdicts(verdicts) => Box::new(verdicts.iter().map(experiment_of)),
-        }
-    }
-
-    /// Leaves out the experiments that do not match.
-    fn keep(&mut self, pattern: &str) {
-        match self {
-            Self::Tables(tables) => tables.retain(|id, _| matches(pattern, id)),
-            Self::Verdicts(verdicts) => verdicts.retain(|one| matches(pattern, experiment_of(one))),
+            Self::Verdicts(verdicts) => Box::new(verdicts.iter().map(|one| experiment_of(&one.id))),
         }
     }
 
@@ -149,8 +144,8 @@ impl Side {
 }
 
 /// The experiment of an entry.
-fn experiment_of(one: &Standing) -> &str {
-    one.id.split_once('/').map_or(one.id.as_str(), |(experiment, _)| experiment)
+fn experiment_of(entry: &str) -> &str {
+    entry.split_once('/').map_or(entry, |(experiment, _)| experiment)
 }
 
 /// Where the tables are that a folder stands for: in it, or in its `results/`.
