@@ -245,8 +245,8 @@ impl SceneReader<'_> {
             self.optimised.borrow_mut().push(at.span());
             return Some(GapRecipe::Gap(Given::Stated(PLACEHOLDER)));
         }
-        if key == "gap" && at.holds(Value::is_swept) {
-            return by_ratio(at, "gap", Parameter::GapRatio);
+        if key == "gap" && self.is_swept(at, Parameter::Gap) {
+            return Some(GapRecipe::Gap(Given::Stated(PLACEHOLDER)));
         }
         let is_list = |value: &Value| matches!(value, Value::Sequence(_));
         if key != "gap" {

@@ -81,6 +81,7 @@ enum Cause {
     Modes,
     Bounces,
     Transient,
+    Damping,
 }
 
 fn of_scene(experiment: &Experiment, scene: &Scene, solvers: &[SolverChoice]) -> Vec<(Cause, String)> {
@@ -99,6 +100,7 @@ fn of_scene(experiment: &Experiment, scene: &Scene, solvers: &[SolverChoice]) ->
         }
     }
     warnings.extend(transient(experiment, scene).map(|warning| (Cause::Transient, warning)));
+    warnings.extend(overdamped(scene).map(|warning| (Cause::Damping, warning)));
     let count = scene.dampers.len();
     if count >= MANY_DAMPERS {
         let warning = format!("{count} dampers can be in 2^{count} contact states, each set up at its first visit");
@@ -123,6 +125,25 @@ fn of_scene(experiment: &Experiment, scene: &Scene, solvers: &[SolverChoice]) ->
     warnings
 }
 
+/// c/(2 m) and k/m of the structure's first mode.
+fn first_mode(scene: &Scene) -> [f64; 2] {
+    let model = scene.structure.model();
+    let (matrices, shape) = (model.matrices(), model.mode(1));
+    let [mass, damping, stiffness] =
+        [matrices.mass, matrices.damping, matrices.stiffness].map(|matrix| matrix.form(&shape, &shape));
+    [damping / (2.0 * mass), stiffness / mass]
+}
+
+/// A damping ratio above 1 is seldom meant: 5 stands for 5 %.
+fn overdamped(scene: &Scene) -> Option<String> {
+    let [half, square] = first_mode(scene);
+    let ratio = half / square.sqrt();
+    (ratio.is_finite() && ratio > 1.0).then(|| {
+        let [ratio, hundredth] = [ratio, ratio / 100.0].map(|ratio| significant(ratio, 3));
+        format!("the damping ratio of the structure is {ratio}, above critical damping; {ratio} % is {hundredth}")
+    })
+}
+
 /// What is left of the first mode's free vibration where averages begin, e^(−a t) without dampers: a = c/(2 m), above critical damping
 /// that of the slower exponential. The averages carry it along, and their uncertainty does not know of it.
 fn transient(experiment: &Experiment, scene: &Scene) -> Option<String> {
@@ -131,11 +152,7 @@ fn transient(experiment: &Experiment, scene: &Scene) -> Option<String> {
     if skip == 0 || until == Until::Settled || scene.is_at_rest() || !averages {
         return None;
     }
-    let model = scene.structure.model();
-    let (matrices, shape) = (model.matrices(), model.mode(1));
-    let [mass, damping, stiffness] =
-        [matrices.mass, matrices.damping, matrices.stiffness].map(|matrix| matrix.form(&shape, &shape));
-    let (half, square) = (damping / (2.0 * mass), stiffness / mass);
+    let [half, square] = first_mode(scene);
     let exponent = if half * half > square { square / (half + (half * half - square).sqrt()) } else { half };
     let decay = exponent * scene.excitation.period();
     let left = libm::exp(-decay * f64::from(skip));

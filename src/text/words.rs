@@ -23,6 +23,7 @@ pub fn of_column(name: &str) -> String {
         "force_ratio" => "dimensionless forcing amplitude",
         "base_amplitude_ratio" => "dimensionless base amplitude",
         "gap_ratio" => "dimensionless gap clearance",
+        "gap" => "gap clearance",
         "damping_ratio" => "structural damping ratio",
         "contact_damping_ratio" => "damping ratio of floor and ceiling",
         "stop" => "limit stop",

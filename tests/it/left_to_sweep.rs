@@ -121,9 +121,19 @@ fn switches_need_no_mark_and_a_stated_value_is_that_of_cases_that_leave_it_out()
 }
 
 #[test]
+fn a_gap_is_swept_in_millimetres() {
+    let first = format!("mass: 100 g, gap: swept, {RIGID}");
+    let second = format!("mass: 100 g, gap: 2 mm, {RIGID}");
+    let sweep = "sweep: {gap: [{linear: {from: 5 mm, to: 7 mm, points: 3}}, 1 cm]}";
+    let gaps = both(&text(MASS, &[&first, &second], HARMONIC, sweep), |damper| damper.gap);
+    assert_eq!(gaps, [[0.005, 0.002], [0.006, 0.002], [0.007, 0.002], [0.01, 0.002]]);
+    let bare = refused(&text(MASS, &[&first], HARMONIC, "sweep: {gap: [5, 6]}"));
+    assert!(bare.contains("`5` has no unit, but a length is wanted"), "{bare}");
+}
+
+#[test]
 fn a_key_that_no_sweep_varies_says_what_to_sweep_instead() {
     for (damper, words, help) in [
-        (format!("mass: 100 g, gap: swept, {RIGID}"), "`gap` is not swept, `gap_ratio` is", "`gap_ratio: swept`"),
         (format!("mass: swept, gap: 5 mm, {RIGID}"), "`mass` is not swept, `mass_ratio` is", "`mass_ratio: swept`"),
         (
             "mass: 100 g, gap: 5 mm, floor: {rigid: {restitution: swept}}".to_owned(),

@@ -304,6 +304,10 @@ fn what_will_take_long_or_say_nothing_is_told_beforehand() {
         (fixed.as_str(), "fixed steps take about"),
         (&THREE_GAPS.replace("restitution: 0.5", "restitution: 1"), "may bounce without end"),
         (
+            &THREE_GAPS.replace("damping_ratio: 0.05", "damping_ratio: 5"),
+            "the damping ratio of the structure is 5, above critical damping; 5 % is 0.05",
+        ),
+        (
             &THREE_GAPS.replace("force_ratio: 5", "force_ratio: 0").replace("[rms", "[velocity_ratio, rms"),
             "the excitation is zero",
         ),

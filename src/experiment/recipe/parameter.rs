@@ -24,6 +24,8 @@ pub enum Parameter {
     MassRatio,
     /// h′ of every damper; `infinite` allowed.
     GapRatio,
+    /// h of every damper, m.
+    Gap,
     /// c′.
     DampingRatio,
     /// kf/ks = kc/ks.
@@ -149,6 +151,7 @@ impl Parameter {
             Self::FrequencyRatio => ("ω′", Ratio, EXCITATION, "frequency_ratio: swept"),
             Self::MassRatio => ("m′", Ratio, DAMPER, "mass_ratio: swept"),
             Self::GapRatio => ("h′", RatioOrInfinite, DAMPER, "gap_ratio: swept"),
+            Self::Gap => ("h", Quantity(Length), DAMPER, "gap: swept"),
             Self::DampingRatio => ("c′", Ratio, STRUCTURE, "damping_ratio: swept"),
             Self::FloorStiffnessRatio => ("kf/ks", Ratio, DAMPER, "floor: {resilient: {stiffness_ratio: swept, …}}"),
             Self::ContactDampingRatio => ("ζf", Ratio, DAMPER, "floor: {resilient: {damping_ratio: swept, …}}"),
@@ -360,6 +363,7 @@ impl DamperRecipe {
                     _ => GapRecipe::Ratio(number()?.into()),
                 };
             }
+            Parameter::Gap => self.gap = GapRecipe::Gap(number()?.into()),
             Parameter::FloorStiffnessRatio | Parameter::ContactDampingRatio | Parameter::FloorTuning => {
                 let [floor, ceiling] = self.swept.surfaces(parameter);
                 for (surface, _) in
