@@ -69,6 +69,8 @@ pub(super) fn outcome(tally: &Tally) -> &'static str {
         _ if evidence == 0 => "Fitted, not tested",
         agree if agree == evidence => "Stands",
         0 if !tally.has(Verdict::Differs) => "Cannot be decided",
+        // Of a few that are decided nothing follows for the many that are not.
+        agree if 2 * (agree + tally.count(Verdict::Differs)) < evidence => "Mostly cannot be decided",
         0 => "Does not stand",
         agree if agree < tally.count(Verdict::Differs) => "Mostly does not stand",
         _ => "Stands in part",

@@ -224,6 +224,21 @@ fn a_conclusion_stands_as_far_as_its_entries_do() {
 }
 
 #[test]
+fn a_page_of_which_little_is_decided_draws_no_conclusion_from_that() {
+    let of = |counts: [(Verdict, usize); 3]| {
+        let each = counts.into_iter().flat_map(|(verdict, count)| std::iter::repeat_n(verdict, count));
+        page_of(None, &each.map(|verdict| entry("one", verdict)).collect::<Vec<_>>())
+    };
+    let few = of([(Verdict::Reproduced, 1), (Verdict::Differs, 2), (Verdict::Blocked, 10)]);
+    let line = "**In short.** Mostly cannot be decided: of 13 statements, 1 agrees, 2 differ, 10 blocked.";
+    assert!(few.contains(line), "{few}");
+    let none = of([(Verdict::Differs, 2), (Verdict::Undecidable, 6), (Verdict::Blocked, 5)]);
+    assert!(none.contains("**In short.** Mostly cannot be decided: of 13 statements, 0 agree, 2 differ"), "{none}");
+    let half = of([(Verdict::Reproduced, 1), (Verdict::Differs, 2), (Verdict::Blocked, 3)]);
+    assert!(half.contains("**In short.** Mostly does not stand: of 6 statements"), "{half}");
+}
+
+#[test]
 fn assumptions_have_a_page_of_their_own() {
     golden("assumptions.md", &assumptions_page(&assumptions()));
 }
