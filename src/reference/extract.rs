@@ -49,6 +49,10 @@ impl Extraction {
     pub(crate) fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
         let line = |along: &Along| view.line(along.source(), &along.of, &along.over, None);
         let at_top = |along: &Along, line: &Line| view.note_place(along.source(), &along.over, line.x[line.highest()]);
+        let at_optimum = |along: &Along, line: &Line| {
+            at_top(along, line);
+            view.note_end(line, line.highest());
+        };
         Ok(match self {
             Self::Number(x) => Extracted { value: *x, run: 0.0, spread: 0.0, unit: String::new(), scale: None },
             Self::Cell(cells) => {
@@ -88,12 +92,12 @@ impl Extraction {
             }
             Self::Argmax(along) => {
                 let line = line(along)?;
-                at_top(along, &line);
+                at_optimum(along, &line);
                 Extracted::place(line.top()?, line.over_unit)
             }
             Self::Argmin(along) => {
                 let line = line(along)?.inverted();
-                at_top(along, &line);
+                at_optimum(along, &line);
                 Extracted::place(line.top()?, line.over_unit)
             }
             Self::AtMaximum(word) => {
@@ -101,6 +105,7 @@ impl Extraction {
                 let other = view.line(word.source(), &word.read, &word.over, None)?;
                 let top = line.x[line.highest()];
                 view.note_place(word.source(), &word.over, top);
+                view.note_end(&line, line.highest());
                 let at = other.x.iter().position(|&x| same(x, top));
                 let at = at.ok_or_else(|| Absence::NoRow(format!("no `{}` at the maximum", word.read)))?;
                 Extracted::cell(other.y[at], &other.unit)
@@ -144,6 +149,7 @@ impl Extraction {
             Self::ArgmaxLead(word) => {
                 let lead = word.pair().lead(view, word.source())?;
                 view.note_place(word.source(), &word.over, lead.x[lead.highest()]);
+                view.note_end(&lead, lead.highest());
                 Extracted::place(lead.top()?, lead.over_unit)
             }
             Self::NearestPassage(word) => word.take(view)?,

@@ -93,6 +93,7 @@ pub(crate) fn judge_entry(
         }
         Check::Claim { threshold_reason, .. } => Some(threshold_reason.clone()).filter(|reason| !reason.is_empty()),
     };
+    let ends = if judgement.verdict == Verdict::Missing { String::new() } else { reads.ends() };
     Judged {
         id: entry.id.clone(),
         experiment: experiment.into(),
@@ -104,7 +105,7 @@ pub(crate) fn judge_entry(
         place: entry.place.clone(),
         verdict: judgement.verdict,
         expected: entry.expected,
-        found: judgement.found,
+        found: judgement.found + &ends,
         comparison: judgement.comparison,
         printed_unit: judgement.printed_unit,
         parts: judgement.parts,

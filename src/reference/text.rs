@@ -41,6 +41,11 @@ pub(crate) fn with_unit(x: f64, digits: usize, unit: &str) -> String {
     in_scale_of(x, x, digits, unit)
 }
 
+/// The largest value that a column can have, if it is a parameter that has one.
+pub(crate) fn greatest_of(column: &str) -> Option<f64> {
+    serde_json::from_value::<Parameter>(serde_json::Value::String(column.into())).ok()?.greatest()
+}
+
 /// A number with its unit, in thousandths where the largest of those that it stands beside is shorter so.
 fn in_scale_of(largest: f64, x: f64, digits: usize, unit: &str) -> String {
     let (factor, unit) = scale(largest, unit);

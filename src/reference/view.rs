@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::columns::{Found, find, find_if_any, height, labels, number, parameter};
 use super::selection::{Allowed, Selection, same};
-use super::text::significant;
+use super::text::{greatest_of, significant, symbol, with_unit};
 use crate::experiment::assumption_of;
 use crate::table::{BASELINE, Data, Table};
 
@@ -85,6 +85,7 @@ pub(crate) struct Read {
 pub(crate) struct Reads {
     tables: RefCell<BTreeMap<String, OfTable>>,
     places: RefCell<Vec<Place>>,
+    ends: RefCell<Vec<String>>,
 }
 
 /// A point of a curve that an entry speaks of.
@@ -121,6 +122,16 @@ impl Reads {
     /// The points of curves that were spoken of, each once.
     pub(crate) fn places(&self) -> Vec<Place> {
         self.places.borrow().clone()
+    }
+
+    /// That optima lie at the first or last point that was looked at, in words: `; the optimum is at the end of the range, f′ = 100, and may
+    /// lie beyond`. Empty if none does.
+    pub(crate) fn ends(&self) -> String {
+        match self.ends.borrow().as_slice() {
+            [] => String::new(),
+            [one] => format!("; the optimum is at the end of the range, {one}, and may lie beyond"),
+            many => format!("; optima are at the end of the range, {}, and may lie beyond", many.join(" and ")),
+        }
     }
 
     /// One by one.
@@ -434,6 +445,20 @@ impl<'a> View<'a> {
         let mut places = self.reads.places.borrow_mut();
         if !places.contains(&place) {
             places.push(place);
+        }
+    }
+
+    /// Notes that the best point of a line is its first or its last, unless the parameter can go no further.
+    pub(crate) fn note_end(&self, line: &Line, best: usize) {
+        let x = line.x[best];
+        let is_inner = best > 0 && best + 1 < line.x.len();
+        if self.variant != BASELINE || is_inner || x == 0.0 || greatest_of(&line.over) == Some(x) {
+            return;
+        }
+        let end = format!("{} = {}", symbol(&line.over), with_unit(x, 4, &line.over_unit));
+        let mut ends = self.reads.ends.borrow_mut();
+        if !ends.contains(&end) {
+            ends.push(end);
         }
     }
 

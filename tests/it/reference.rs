@@ -130,6 +130,26 @@ fn half_a_unit_of_the_last_printed_digit_is_the_uncertainty_of_a_datum() {
 }
 
 #[test]
+fn an_optimum_at_the_end_of_the_range_is_said_to_lie_there() {
+    let end = "; the optimum is at the end of the range, f′ = 2.4, and may lie beyond";
+    let until =
+        |to: &str| OPTIMUM.replace("force_ratio}", &format!("force_ratio, where: {{force_ratio: {{to: {to}}}}}}}"));
+    let found = |body: &str| judged(body, &peak()).found;
+    assert!(!found(&until("2.6")).contains("end of the range"), "{}", found(&until("2.6")));
+    assert!(found(&until("2.45")).ends_with(end), "{}", found(&until("2.45")));
+    let claim = "claim: {between: {value: {argmax: {of: velocity_ratio, over: force_ratio, where: {force_ratio: {to: 2.45}}}}, from: 2}}";
+    let one = judged(&format!("{claim}\nthreshold_reason: none"), &peak());
+    assert!(one.verdict == Verdict::Reproduced && one.found.ends_with(end), "{}", one.found);
+    // There is nothing beyond the edge of a plate, or below zero.
+    let edge = |at: &[f64], of: &str| {
+        let table = complete(vec![float(of, at), float("velocity_ratio", &[1.0, 2.0, 3.0])]);
+        judged(&OPTIMUM.replace("force_ratio", of), &table).found
+    };
+    assert!(!edge(&[0.0, 0.5, 1.0], "damper_x").contains("end of the range"));
+    assert!(edge(&[0.0, 0.5, 0.9], "damper_x").contains("damper x = 0.9"), "{}", edge(&[0.0, 0.5, 0.9], "damper_x"));
+}
+
+#[test]
 fn a_verdict_tells_what_was_simulated_for_it() {
     let mut table = variants(&[("baseline", 1.52), ("stop_length=0.05", 1.53)], 0.0, 0.1, 9);
     table.columns.push(column("events", "", Data::Int(vec![490, 500])));

@@ -221,6 +221,12 @@ impl Parameter {
         matches!(self, Self::ForceRatio | Self::BaseAmplitudeRatio | Self::Force | Self::Impulse)
     }
 
+    /// The largest value that it can have, if there is one.
+    #[must_use]
+    pub fn greatest(self) -> Option<f64> {
+        matches!(self, Self::ForceX | Self::ForceY | Self::DamperX | Self::DamperY | Self::ParticleShare).then_some(1.0)
+    }
+
     /// Unit symbol of its numbers, empty when dimensionless.
     #[must_use]
     pub fn unit(self) -> &'static str {
