@@ -107,6 +107,7 @@ impl Rows {
         if !tied.is_empty() {
             text += &format!(" No worse than it by more than the standard error: {}.", tied.join("; "));
         }
+        text += &at_bounds(optimise, best);
         text + "\n\n"
     }
 
@@ -141,7 +142,15 @@ impl Rows {
             share => format!("{} %", compact(share, 2)),
         };
         for row in &self.list {
-            let gaps: Vec<String> = row.gaps.iter().map(|gap| quantity(*gap, self.gap_unit, 3)).collect();
+            let gaps: Vec<String> = row
+                .gaps
+                .iter()
+                .zip(&optimise.bounds)
+                .map(|(gap, bounds)| {
+                    let end = end_of(*gap, *bounds).map_or_else(String::new, |end| format!(" ({})", end.word()));
+                    quantity(*gap, self.gap_unit, 3) + &end
+                })
+                .collect();
             let evaluations = if row.evaluations > 0.0 { format!("{}", row.evaluations) } else { String::new() };
             let [improvement, error] = row.improvement;
             let improvement =
@@ -193,6 +202,49 @@ impl Rows {
             format!("worse by {percent} %")
         }
     }
+}
+
+/// An end of the range that a search has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum End {
+    Least,
+    Most,
+}
+
+impl End {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Least => "least allowed",
+            Self::Most => "most allowed",
+        }
+    }
+}
+
+/// The end of its range that a gap lies at, up to what a search that closes in on it leaves.
+fn end_of(gap: f64, [least, most]: [f64; 2]) -> Option<End> {
+    let reach = 1e-6 * (most - least);
+    match gap {
+        gap if (gap - least).abs() <= reach => Some(End::Least),
+        gap if (most - gap).abs() <= reach => Some(End::Most),
+        _ => None,
+    }
+}
+
+/// That the best gaps are no optimum within their ranges, where some lie at an end; a gap of zero has nothing below it.
+fn at_bounds(optimise: &Optimise, best: &Row) -> String {
+    let ends = best.gaps.iter().zip(&optimise.bounds).map(|(gap, bounds)| Some((end_of(*gap, *bounds)?, bounds[0])));
+    let ends: Vec<(End, f64)> = ends.flatten().collect();
+    if ends.is_empty() {
+        return String::new();
+    }
+    let gaps = match (best.gaps.len(), ends.len()) {
+        (1, _) => "Its gap lies at an end of its range".to_owned(),
+        (all, 1) => format!("1 of its {all} gaps lies at an end of its range"),
+        (all, many) => format!("{many} of its {all} gaps lie at ends of their ranges"),
+    };
+    let is_open = |(end, least): &(End, f64)| *end == End::Most || *least > 0.0;
+    let beyond = if ends.iter().any(is_open) { ": a wider range may hold a better one" } else { "" };
+    format!(" {gaps}{beyond}.")
 }
 
 /// Standard error of a difference.

@@ -195,6 +195,24 @@ fn an_improvement_within_its_standard_error_is_called_noise() {
     assert!(sure.contains("seeds 1 and 2"), "{sure}");
 }
 
+#[test]
+fn an_optimum_at_the_end_of_its_range_is_said_to_lie_there() {
+    let page = |gaps: &str| {
+        let desk = desk();
+        desk.put("experiments/ch6/ch6-gaps.yaml", &GAPS.replace("{from: 0 mm, to: 100 mm}", gaps));
+        desk.run(2, &Bowl::default(), &IgnoreEvents);
+        let study = Study::new(desk.layout.clone(), desk.texts());
+        publish(&study, &judge_all(&study), &["ch6-gaps"].into()).unwrap();
+        String::from_utf8(desk.bytes("reports/ch6/ch6-gaps.md")).unwrap()
+    };
+    let within = page("{from: 0 mm, to: 100 mm}");
+    assert!(!within.contains("at an end of") && !within.contains("most allowed"), "{within}");
+    // The best second gap is 70 mm.
+    let short = page("{from: 0 mm, to: 70 mm}");
+    let said = "1 of its 3 gaps lies at an end of its range: a wider range may hold a better one.";
+    assert!(short.contains(said) && short.contains("70 mm (most allowed)"), "{short}");
+}
+
 /// What one run shows may be luck: what goes on from the best candidate begins at the one that is best as a result.
 #[test]
 fn a_landscape_goes_through_the_candidate_that_is_best_after_its_ensemble() {
