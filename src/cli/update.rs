@@ -1,6 +1,7 @@
 //! `shotdamp` and `shotdamp run`: simulate what is stale, then judge, draw and write.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
 
 use super::args::{Args, Choice, RunArgs};
 use super::dry_run::dry_run;
@@ -49,6 +50,9 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
             }
         }
     }
+    if common.command.is_none() && !todo.is_empty() {
+        print_progress(&announcement(&study, todo.len()));
+    }
     let how = How { threads: common.threads(), quiet: common.quiet, shard: None, from_scratch: args.force };
     let Ran { restored, unsaved } =
         simulate(layout, &todo, how, |item, finished| save(layout, item, finished).map(|_| ()))?;
@@ -65,12 +69,22 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     conclude(&study, &args.choice, done)
 }
 
+/// What a run of the whole study is about to do, for who has typed the bare command to see what it does.
+fn announcement(study: &Study, experiments: usize) -> String {
+    let title = study.about.title.as_ref().map_or_else(String::new, |title| format!(" {title}"));
+    format!(
+        "Bringing the study{title} in {} up to date: {} to simulate; Ctrl-C is safe, finished rows are kept.\n",
+        study.layout.root().display(),
+        counted(experiments, "experiment", "experiments")
+    )
+}
+
 fn nothing_to_do(layout: &Layout, snapshot: &Snapshot, ids: &BTreeSet<&str>) -> Result<Exit, CliError> {
     let chosen = snapshot.experiments.iter().filter(|(id, _)| ids.contains(id.as_str()));
     let verdicts: BTreeMap<_, _> = chosen.map(|(id, known)| (id.clone(), known.judged.clone())).collect();
     let judgement = Judgement { verdicts, ..Judgement::default() };
     let known = |id: &str| snapshot.experiments.get(id).map(|known| known.folder.as_str());
-    let page = page_to_open(layout, ids, known);
+    let page = page_to_open(layout, ids, known, Some(INDEX));
     print(&format!("Nothing to do.\n{}{page}", verdicts_of(&judgement, ids)))?;
     Ok(Exit::of_verdicts(judgement.verdicts.values().flatten()))
 }
@@ -82,16 +96,30 @@ fn verdicts_of(judgement: &Judgement, ids: &BTreeSet<&str>) -> String {
     summary + &doubts(judgement, ids)
 }
 
-/// The page to open next: of a single experiment its own, else the index; nothing where it is not there.
-fn page_to_open<'a>(layout: &Layout, ids: &BTreeSet<&'a str>, folder: impl Fn(&'a str) -> Option<&'a str>) -> String {
-    let name = match ids.iter().collect::<Vec<_>>().as_slice() {
-        [] => None,
-        [id] => folder(id).map(|folder| report_of(folder, id)),
-        _ => Some(INDEX.into()),
+/// Pages of experiments that are named where the index is not that of this run.
+const NAMED: usize = 3;
+
+/// The page to open next: of a single experiment its own, of several the `index`, or their own if there is none of this run; nothing
+/// where it is not there.
+fn page_to_open<'a>(
+    layout: &Layout,
+    ids: &BTreeSet<&'a str>,
+    folder: impl Fn(&'a str) -> Option<&'a str>,
+    index: Option<&str>,
+) -> String {
+    let own = ids.iter().filter_map(|id| Some(report_of(folder(id)?, id)));
+    let names: Vec<String> = match index {
+        Some(index) if ids.len() > 1 => vec![index.to_owned()],
+        _ => own.collect(),
     };
-    let Some(path) = name.map(|name| layout.path(&name)).filter(|path| path.is_file()) else { return String::new() };
     let here = std::env::current_dir().unwrap_or_default();
-    format!("Result: {}\n", path.strip_prefix(here).unwrap_or(&path).display())
+    let paths: Vec<_> = names.iter().map(|name| layout.path(name)).filter(|path| path.is_file()).collect();
+    let shown = |path: &PathBuf| format!("Result: {}\n", path.strip_prefix(&here).unwrap_or(path).display());
+    let mut text: String = paths.iter().take(NAMED).map(shown).collect();
+    if paths.len() > NAMED {
+        text += &format!("and {} more pages beside them.\n", paths.len() - NAMED);
+    }
+    text
 }
 
 /// What was done before the verdicts.
@@ -145,7 +173,8 @@ pub(super) fn conclude(study: &Study, choice: &Choice, done: Done) -> Result<Exi
     let planned =
         |id| study.items.iter().find(|item| item.source.experiment.id.0 == id).map(|item| item.source.folder());
     let folder = |id| study.known.get(id).map(|known| known.folder.as_str()).or_else(|| planned(id));
-    let page = if tables_only { String::new() } else { page_to_open(&study.layout, &chosen.ids, folder) };
+    let index = (elsewhere == 0).then_some(INDEX);
+    let page = if tables_only { String::new() } else { page_to_open(&study.layout, &chosen.ids, folder, index) };
     print(&(verdicts_of(&judgement, &chosen.ids) + &page))?;
     print_error(&chosen.left_out());
     Ok(exit)

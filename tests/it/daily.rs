@@ -392,6 +392,34 @@ fn a_run_of_one_experiment_says_that_its_averages_begin_too_early() {
 }
 
 #[test]
+fn the_bare_command_says_what_it_is_about_to_do() {
+    let desk = Desk::of_one("experiments/ch3/ch3-long.yaml", crate::desk::THREE_GAPS);
+    desk.put("study.yaml", "title: Impact dampers\n");
+    let said = shotdamp(&desk, &[]);
+    let line = format!(
+        "Bringing the study Impact dampers in {} up to date: 1 experiment to simulate; Ctrl-C is safe, finished rows are kept.",
+        desk.folder.path().display()
+    );
+    assert_eq!(said.err.lines().next(), Some(line.as_str()), "{}", said.err);
+    assert!(!shotdamp(&desk, &[]).err.contains("Bringing"), "there is nothing to do");
+    fs::remove_dir_all(desk.layout.path("results")).unwrap();
+    assert_eq!(shotdamp(&desk, &["--quiet"]).err, "");
+}
+
+#[test]
+fn a_run_of_some_experiments_names_the_pages_that_it_wrote() {
+    let desk = simulated();
+    desk.put("experiments/ch3/ch3-long.yaml", crate::desk::THREE_GAPS);
+    assert_eq!(shotdamp(&desk, &["run", "-q"]).code, 0);
+    // Reports are committed, tables are not.
+    fs::remove_dir_all(desk.layout.path("results")).unwrap();
+    let said = shotdamp(&desk, &["run", "ch3-gap", "ch3-long"]);
+    assert!(said.out.contains("The pages of the whole study stay as they are"), "{}", said.out);
+    let named: Vec<&str> = said.out.lines().filter(|line| line.starts_with("Result: ")).collect();
+    assert!(named.len() == 2 && named[0].ends_with("ch3-gap.md") && named[1].ends_with("ch3-long.md"), "{named:?}");
+}
+
+#[test]
 fn one_experiment_run_in_a_fresh_clone_leaves_the_pages_of_the_whole_study() {
     let desk = simulated();
     assert_eq!(shotdamp(&desk, &["run", "-q"]).code, 0);
