@@ -104,7 +104,7 @@ fn on_disk(study: &Study) -> BTreeMap<String, OnDisk> {
                 Err(error) => OnDisk::Failed(error.to_string()),
             },
             State::Stale(_) if study.layout.path(&table_name(id)).is_file() => OnDisk::Stale,
-            State::Stale(_) if is_begun(&study.layout, id) => OnDisk::Unfinished,
+            State::Stale(_) if is_begun(&study.layout, item) => OnDisk::Unfinished,
             State::Stale(_) => OnDisk::NotRun,
         };
         (id.to_string(), state)

@@ -37,11 +37,6 @@ pub(super) fn tables(layout: &Layout, id: &ExperimentId) -> impl Iterator<Item =
     })
 }
 
-/// True if there is one.
-pub(super) fn any(layout: &Layout, id: &ExperimentId) -> bool {
-    !files(layout, id).is_empty()
-}
-
 /// Files of the folder, the latest first.
 fn files(layout: &Layout, id: &ExperimentId) -> Vec<PathBuf> {
     let entries = fs::read_dir(layout.path(&folder(id))).into_iter().flatten().flatten();

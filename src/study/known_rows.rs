@@ -125,6 +125,13 @@ impl KnownRows {
         self.places.is_empty()
     }
 
+    /// True if some rows of the plan are known and others are not; which points a refined curve will get is not known before.
+    pub(super) fn is_part_of(&self, item: &Item) -> bool {
+        let wanted = fingerprints(item);
+        let known = wanted.iter().filter(|one| self.has(**one) || self.groups.contains_key(one)).count();
+        known > 0 && (known < wanted.len() || !item.source.experiment.refined.is_empty())
+    }
+
     /// The whole table, of an experiment whose rows depend on each other.
     pub(super) fn whole(&self) -> Option<&Table> {
         self.whole.as_ref()

@@ -4,6 +4,7 @@ use std::fs::{self, File, TryLockError};
 use std::io::Write;
 use std::path::Path;
 
+use super::known_rows::KnownRows;
 use super::layout::{Layout, journal_name, record_name, table_name};
 use super::plan::{Item, State};
 use super::record::{FileHash, RECORD_FORMAT, Record};
@@ -73,10 +74,10 @@ pub fn keep(layout: &Layout, item: &Item, finished: &Finished) -> Result<(), Par
     earlier::add(layout, id, &finished.table)
 }
 
-/// True if a run of the experiment has left something to go on from.
+/// True if a run of the experiment has left some of what is planned now, and not all of it.
 #[must_use]
-pub fn is_begun(layout: &Layout, id: &ExperimentId) -> bool {
-    layout.path(&journal_name(id)).is_file() || earlier::any(layout, id)
+pub fn is_begun(layout: &Layout, item: &Item) -> bool {
+    layout.path(&journal_name(&item.source.experiment.id)).is_file() || KnownRows::of(layout, item).is_part_of(item)
 }
 
 /// Held while files are written; other runs wait. The system gives it back when the process ends, however it ends.

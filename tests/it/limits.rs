@@ -119,6 +119,18 @@ fn an_interrupted_run_keeps_the_rows_it_has() {
 }
 
 #[test]
+fn an_experiment_of_which_other_tables_were_kept_is_not_begun() {
+    let desk = study(THREE_GAPS);
+    assert_eq!(shotdamp(&desk, &["run"]).code, 0);
+    desk.put("experiments/ch3/ch3-long.yaml", &THREE_GAPS.replace("mass_ratio: 0.05", "mass_ratio: 0.06"));
+    assert_eq!(shotdamp(&desk, &["run"]).code, 0);
+    // With the table in force goes all that there is of this plan.
+    std::fs::remove_file(desk.layout.path("results/ch3-long.parquet")).unwrap();
+    let checked = shotdamp(&desk, &["check"]).out;
+    assert!(checked.contains("ch3-long (not run)"), "{checked}");
+}
+
+#[test]
 fn an_interrupted_run_keeps_its_rows_however_long_they_take_to_write() {
     let many = "gap_ratio: {log: {from: 1, to: 100, points: 60000}}";
     let desk = study(&THREE_GAPS.replace("gap_ratio: [10, 50, 90]", many));
