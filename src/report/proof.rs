@@ -7,6 +7,10 @@ use crate::text::words;
 use super::markdown::escaped;
 use crate::text::words::counted;
 
+/// What the column `chaotic` counts: a twin parts within the cycles of the run, whatever motion that ends in. The page counts the kinds of
+/// motion elsewhere.
+const SENSITIVE: &str = "rows sensitive to initial conditions within the cycles of the run";
+
 /// The balances on an experiment's page; nothing without a table.
 pub(super) fn section(table: Option<&Table>) -> String {
     let Some(table) = table else { return String::new() };
@@ -30,8 +34,8 @@ pub(super) fn section(table: Option<&Table>) -> String {
             proof.smallest_margin(),
             match (proof.total("chaotic").as_str(), proof.largest("members").as_str()) {
                 ("0", _) => String::new(),
-                (chaotic, "1") => format!("; chaotic rows: {chaotic}, each of a single run"),
-                (chaotic, most) => format!("; chaotic rows: {chaotic}, run as ensembles of up to {most} members"),
+                (rows, "1") => format!("; {SENSITIVE}: {rows}, each of a single run"),
+                (rows, most) => format!("; {SENSITIVE}: {rows}, run as ensembles of up to {most} members"),
             }
         );
     }
