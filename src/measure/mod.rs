@@ -40,6 +40,7 @@ pub use request::{
 };
 pub use subject::{Comparison, Needs, Subject};
 pub use trial::Trial;
+pub use undefined::Particles;
 
 use serde::Serialize;
 

@@ -6,11 +6,20 @@ use crate::dynamics::MotionKind;
 use crate::scene::Scene;
 use crate::text::words;
 
+/// How many particles a scene may have: only several can be struck at one instant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Particles {
+    /// One, or none.
+    One,
+    /// More.
+    Several,
+}
+
 impl Evaluated {
     /// Which numbers are undefined, and why, each reason once: `multipliers, lyapunov_exponent undefined: …`. Empty if all are
     /// defined.
     #[must_use]
-    pub fn undefined(&self, measures: &[Measure]) -> String {
+    pub fn undefined(&self, measures: &[Measure], particles: Particles) -> String {
         // A table that is read again knows the motion only where it has the column.
         let motion = self.motion.filter(|_| measures.contains(&Measure::Motion));
         let mut reasons: Vec<(&str, Vec<String>)> = Vec::new();
@@ -28,7 +37,7 @@ impl Evaluated {
             let (why, name) = if has_multipliers && *measure == Measure::MultiplierResidual {
                 ("the product of the multipliers is below the range of numbers", words::of_key(measure))
             } else {
-                (measure.why_undefined(motion, one), measure.name_undefined())
+                (measure.why_undefined(motion, one, particles), measure.name_undefined())
             };
             match reasons.iter_mut().find(|(known, _)| *known == why) {
                 Some((_, names)) if names.contains(&name) => {}
@@ -56,7 +65,7 @@ impl Measure {
     }
 
     /// Why this measure has no number where nothing went wrong, in a run of this motion, if it is known.
-    fn why_undefined(self, motion: Option<MotionKind>, one: &Measured) -> &'static str {
+    fn why_undefined(self, motion: Option<MotionKind>, one: &Measured, particles: Particles) -> &'static str {
         match self {
             Self::FloorImpactLag | Self::CeilingImpactLag => "no impulse stands in the time history",
             Self::LastPeak | Self::PeakVariation | Self::PeakDecayError => "the time history has no crest",
@@ -65,14 +74,17 @@ impl Measure {
             }
             Self::Drift => "nothing moves, or a single cycle is averaged, which has no halves",
             Self::FinalHeight => "there is no particle",
-            Self::LyapunovExponent => match motion.map(MotionKind::repeats) {
-                Some(false) => "particles are struck at one instant, or the cycles are too few",
-                _ => "nothing is left of a disturbance, or particles are struck at one instant",
+            Self::LyapunovExponent => match (motion.map(MotionKind::repeats), particles) {
+                (Some(false), Particles::One) => "the cycles are too few",
+                (Some(false), Particles::Several) => "particles are struck at one instant, or the cycles are too few",
+                (_, Particles::One) => "nothing is left of a disturbance",
+                (_, Particles::Several) => "nothing is left of a disturbance, or particles are struck at one instant",
             },
             _ if self.elasticity_in().is_some() || self == Self::VelocityRatioInput => Absent::of(one).why(),
-            _ if self.is_of_a_period() => match motion {
-                Some(_) => "particles are struck at one instant",
-                None => "the motion does not come again, or particles are struck at one instant",
+            _ if self.is_of_a_period() => match (motion, particles) {
+                (Some(_), Particles::Several) => "particles are struck at one instant",
+                (None, Particles::Several) => "the motion does not come again, or particles are struck at one instant",
+                (_, Particles::One) => "the motion does not come again",
             },
             Self::SettledVelocityRatio => "the motion does not settle",
             _ if self.needs_events() => "there is no such event",

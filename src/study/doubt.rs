@@ -1,6 +1,7 @@
 //! What a table says of rows whose numbers are to be doubted: columns that are there only where some row gives cause.
 
-use crate::measure::{Evaluated, Measure};
+use crate::experiment::Experiment;
+use crate::measure::{Evaluated, Particles};
 use crate::table::{Column, Data, UNDEFINED};
 
 pub(super) use crate::table::RESIDUAL_BOUND;
@@ -15,7 +16,17 @@ pub(super) fn residual_bounds(audited: &[Option<&Evaluated>]) -> Option<Column> 
 }
 
 /// Which numbers of a row are undefined, and why; empty in other rows.
-pub(super) fn undefined<'a>(measures: &[Measure], rows: impl Iterator<Item = Option<&'a Evaluated>>) -> Option<Column> {
-    let texts: Vec<String> = rows.map(|row| row.map_or_else(String::new, |row| row.undefined(measures))).collect();
+pub(super) fn undefined<'a>(
+    experiment: &Experiment,
+    rows: impl Iterator<Item = Option<&'a Evaluated>>,
+) -> Option<Column> {
+    let particles = match experiment.recipe.dampers.as_slice() {
+        [] => Particles::One,
+        [one] if one.array.is_none() => Particles::One,
+        _ => Particles::Several,
+    };
+    let of_row =
+        |row: Option<&Evaluated>| row.map_or_else(String::new, |row| row.undefined(&experiment.measures, particles));
+    let texts: Vec<String> = rows.map(of_row).collect();
     texts.iter().any(|text| !text.is_empty()).then(|| Column::new(UNDEFINED, Data::Text(texts)))
 }

@@ -87,7 +87,7 @@ pub(super) fn table(
         "failure",
         texts(&|row| outcomes[row].as_ref().err().map(ToString::to_string).unwrap_or_default()),
     ));
-    columns.extend(doubt::undefined(&experiment.measures, evaluated.iter().copied()));
+    columns.extend(doubt::undefined(experiment, evaluated.iter().copied()));
     columns.extend(histories(experiment, jobs, outcomes));
     Table { columns, metadata, fingerprints }
 }

@@ -118,6 +118,6 @@ pub(super) fn table(
     columns.extend(proof(&evaluated, &evaluated));
     columns.extend(doubt::residual_bounds(&evaluated));
     columns.push(Column::new("failure", texts(&|row| row.failure().map(ToString::to_string).unwrap_or_default())));
-    columns.extend(doubt::undefined(&experiment.measures, evaluated.iter().copied()));
+    columns.extend(doubt::undefined(experiment, evaluated.iter().copied()));
     Table { columns, metadata, fingerprints: Vec::new() }
 }

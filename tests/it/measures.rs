@@ -1,7 +1,7 @@
 //! Measures say what they are called: of the particle that they name, at the points that count, and undefined where they have no meaning.
 
 use shotdamp::experiment::{Assumptions, Experiment, Problems, load_assumptions, parse_experiment};
-use shotdamp::measure::{ENSEMBLE_OF_A_VARIANT, Evaluated, Request, Rigour, SolverChoice, evaluate};
+use shotdamp::measure::{ENSEMBLE_OF_A_VARIANT, Evaluated, Particles, Request, Rigour, SolverChoice, evaluate};
 
 const BEAM: &str = "cantilever_beam: {length: 1 m, width: 30 mm, thickness: 5 mm, youngs_modulus: 200 GPa, density: 7800 kg/m^3, rayleigh: 5e-5, modes: 3}";
 const MASS: &str = "single_mass: {mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.05}";
@@ -95,7 +95,7 @@ fn the_drift_of_a_single_cycle_is_undefined_and_nothing_else_is() {
         let rest = format!("run: {{skip: 0 cycles, average: {cycles} cycles}}\nmeasure: [drift, rms_velocity]");
         let experiment = experiment(MASS, &on_mass(FLOOR, IMPULSES), &rest);
         let evaluated = evaluated(&experiment, SolverChoice::EventDriven);
-        (values(&evaluated), evaluated.undefined(&experiment.measures))
+        (values(&evaluated), evaluated.undefined(&experiment.measures, Particles::One))
     };
     let (one, why) = of_cycles(1);
     assert!(one[0].is_nan() && one[1] > 0.0, "{one:?}");
@@ -121,7 +121,7 @@ fn lags_are_undefined_with_a_reason_where_no_impulse_stands() {
         );
         let experiment = experiment(MASS, &on_mass(FLOOR, excitation), &rest);
         let evaluated = evaluated(&experiment, SolverChoice::EventDriven);
-        (values(&evaluated), evaluated.undefined(&experiment.measures))
+        (values(&evaluated), evaluated.undefined(&experiment.measures, Particles::One))
     };
     let reason = "floor_impact_lag, ceiling_impact_lag undefined: no impulse stands in the time history";
     let once = "{single_impulse: {force_ratio: 8, frequency_ratio: 1}}";

@@ -6,7 +6,9 @@ use std::f64::consts::PI;
 use shotdamp::dynamics::{
     Elasticity, ElasticityError, EventKind, HybridSystem, Options, Orbit, Response, StartState, Until, event_driven,
 };
-use shotdamp::measure::{Evaluated, Measure, NamedRows, Request, Rigour, Settings, SolverChoice, Subject, evaluate};
+use shotdamp::measure::{
+    Evaluated, Measure, NamedRows, Particles, Request, Rigour, Settings, SolverChoice, Subject, evaluate,
+};
 use shotdamp::scene::{Design, Excitation, Scene, SingleMass, Structure};
 
 use super::bench::{GRAVITY, base, close, damper, in_flight, resilient, rigid, scene, system, within};
@@ -287,7 +289,7 @@ fn the_velocity_ratio_changes_with_its_reference() {
         within(&format!("{design:?}"), value(&base, 2 + i), -own(design), 1e-9);
     }
     within("force", value(&base, 6), 1.0 - own(Design::Force), 1e-9);
-    assert_eq!(base.undefined(&MEASURES), "");
+    assert_eq!(base.undefined(&MEASURES, Particles::One), "");
 
     // The particle is carried: of two such references the mean slope between them.
     let loaded = measured(&scene, 0.05);
@@ -312,15 +314,18 @@ fn a_row_without_elasticities_says_why() {
     let mut unnamed = chaotic.clone();
     unnamed.measured.remove(1);
     unnamed.motion = None;
-    let said = unnamed.undefined(&without);
+    let said = unnamed.undefined(&without, Particles::One);
     assert!(said.contains("gap_elasticity, mass_elasticity"), "{said}");
     assert!(said.contains("force_elasticity undefined: the motion does not settle"), "{said}");
+    // A single particle is struck with no other.
+    assert!(!said.contains("at one instant"), "{said}");
+    assert!(unnamed.undefined(&without, Particles::Several).contains("or particles are struck at one instant"));
 
     // Rigid faces have no stiffness; without a ceiling there is no gap.
     let drive = Excitation::Harmonic { force: 3.0, angular_frequency: 25.0 };
     let open = scene(base(1.0, 1000.0, 2.0), GRAVITY, damper(0.1, f64::INFINITY, rigid(0.5)), drive);
     let evaluated = measured(&open, 0.0);
-    let said = evaluated.undefined(&MEASURES);
+    let said = evaluated.undefined(&MEASURES, Particles::One);
     assert_eq!(said, "gap_elasticity, stiffness_elasticity undefined: the scene has no such parameter, or one of zero");
     assert!(evaluated.measured[6].value.is_finite());
 }
