@@ -125,11 +125,14 @@ fn distance(a: Color, b: Color) -> u8 {
 mod tests {
     use super::*;
 
-    /// A gradient of many colours, and two tints side by side that differ in few shades.
+    /// More colours than fit, then two gradients; each with two tints side by side that differ in few shades.
     #[test]
     fn the_tints_of_bands_keep_their_colours_beside_a_map_of_many_colours() {
         let tints = [[206, 222, 236], [206, 229, 219]];
-        let mut colors: Vec<Color> = (0..=255).flat_map(|a| (0..=255).map(move |b| [a, b, a ^ b])).collect();
+        // Farther apart than any pixel may be off.
+        let shades = || (0..8).map(|shade| 33 * shade);
+        let pairs = || shades().flat_map(|a| shades().map(move |b| [a, b]));
+        let mut colors: Vec<Color> = pairs().flat_map(|[a, b]| shades().map(move |c| [a, b, c])).collect();
         colors.extend([tints[0]; 2000].into_iter().chain([tints[1]; 2000]));
         let by_count = by_count(&colors);
         let palette = ERRORS.iter().find_map(|error| palette(&by_count, colors.len(), *error));
