@@ -10,7 +10,7 @@ use crate::dynamics::{Allowance, Limit, Until};
 use crate::experiment::{Assumptions, Case, Experiment};
 use crate::measure::{Settings, SolverChoice};
 use crate::scene::{Scene, Surface};
-use crate::text::number::significant;
+use crate::text::number::{compact, significant};
 use crate::text::words::counted;
 
 /// Fixed steps that take about a second.
@@ -139,7 +139,7 @@ fn overdamped(scene: &Scene) -> Option<String> {
     let [half, square] = first_mode(scene);
     let ratio = half / square.sqrt();
     (ratio.is_finite() && ratio > 1.0).then(|| {
-        let [ratio, hundredth] = [ratio, ratio / 100.0].map(|ratio| significant(ratio, 3));
+        let [ratio, hundredth] = [ratio, ratio / 100.0].map(|ratio| compact(ratio, 3));
         format!("the damping ratio of the structure is {ratio}, above critical damping; {ratio} % is {hundredth}")
     })
 }
