@@ -373,7 +373,7 @@ pub(super) struct CheckArgs {
     /// Print the verdicts as JSON instead
     #[arg(long, conflicts_with = "github")]
     pub json: bool,
-    /// Also check that reports/ is up to date; of a pattern, the pages and figures of its experiments
+    /// Also check that reports/ is up to date; with PATTERN, only the pages and figures of those experiments
     #[arg(long)]
     pub reports: bool,
     /// Change the expected verdict of this entry (experiment/entry) in its file to the one that it got

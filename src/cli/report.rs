@@ -26,7 +26,7 @@ pub(super) fn report(layout: &Layout, args: &ReportArgs) -> Result<Exit, CliErro
         let all = counted(study.items.len(), "experiment", "experiments");
         let [verb, whose, what] = if missing == 1 { ["has", "its", "it"] } else { ["have", "their", "them"] };
         print_progress(&format!(
-            "warning: {missing} of {all} {verb} no table that is up to date: {whose} entries are missing in the file; `shotdamp run` makes {what}\n"
+            "warning: {missing} of {all} {verb} no table that is up to date: {whose} numbers and figures are not in the file; `shotdamp run` makes {what}\n"
         ));
     }
     let Html { text, problems } = html(&study, &judgement);

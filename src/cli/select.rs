@@ -200,7 +200,7 @@ impl<'a> Chosen<'a> {
         let (experiments, references) = (of("experiments/"), of("reference/"));
         let mut text = String::new();
         if blind {
-            text += &format!("Left out: all experiments, because {ASSUMPTIONS} has mistakes.\n");
+            text += &format!("Left out: every experiment, because {ASSUMPTIONS} has mistakes.\n");
         } else if !experiments.is_empty() {
             text += &format!("Left out, because of mistakes in their files: {}.\n", experiments.join(", "));
         }

@@ -42,7 +42,7 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     print_warnings(study.warnings().as_ref());
     let todo = todo(&chosen, args);
     // In a run of the whole study there would be dozens of them.
-    if !args.choice.patterns.is_empty() {
+    if !args.choice.is_all() {
         for item in &todo {
             let experiment = &item.source.experiment;
             if let Some(warning) = transient_left(experiment, &study.sheet.assumptions()) {
@@ -117,7 +117,7 @@ fn page_to_open<'a>(
     let shown = |path: &PathBuf| format!("Result: {}\n", path.strip_prefix(&here).unwrap_or(path).display());
     let mut text: String = paths.iter().take(NAMED).map(shown).collect();
     if paths.len() > NAMED {
-        text += &format!("and {} more pages beside them.\n", paths.len() - NAMED);
+        text += &format!("And {} in reports/.\n", counted(paths.len() - NAMED, "more page", "more pages"));
     }
     text
 }

@@ -7,13 +7,14 @@
 //! - [`Genetic`]: the genetic algorithm; [`CmaEs`]: the peer that it is judged against;
 //! - [`two_opt`]: swaps of pairs, after a search; [`dense`]: every point of a grid, where there are few coordinates;
 //! - [`polish`]: down the gradient from a point that one of them has found, where there is a gradient;
-//! - [`sections`]: the function along each coordinate through a point.
+//! - [`sections`]: the function along each coordinate through a point; [`overshoot`]: how far a curve may rise between its points.
 
 mod bounds;
 mod cma_es;
 mod dense;
 mod eigen;
 mod genetic;
+mod parabola;
 mod polish;
 mod random;
 mod search;
@@ -24,6 +25,7 @@ pub use bounds::{Bounds, BoundsError, Spacing};
 pub use cma_es::CmaEs;
 pub use dense::{Dense, dense};
 pub use genetic::{Genetic, GeneticSettings};
+pub use parabola::{Point, overshoot};
 pub use polish::{Slope, Smooth, polish};
 pub use random::Stream;
 pub use search::{Batch, Found, Function, Optimiser, Score, Stalled, Step, Stopped, Stopping, Wanted, minimise};

@@ -91,7 +91,7 @@ pub enum Stopped {
     Exhausted,
     /// No step goes down any more.
     Converged,
-    /// The same, but beyond an end of a side.
+    /// It would go down only beyond an end of a side.
     Bound,
     /// A step down leads to where the function has no derivative.
     Edge,

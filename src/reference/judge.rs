@@ -14,7 +14,7 @@ use super::extraction::Extraction;
 use super::fit::Fit;
 use super::motion_behind::MotionBehind;
 use super::price::Price;
-use super::printed::Printed;
+use super::printed::{Printed, PrintedUnit};
 use super::resonance::PrintedPeak;
 use super::tally::{Decision, Outcome};
 use super::text::measured;
@@ -133,7 +133,7 @@ struct Judgement {
     verdict: Verdict,
     found: String,
     comparison: Option<Comparison>,
-    printed_unit: String,
+    printed_unit: PrintedUnit,
     parts: Vec<Part>,
     fit: Option<Fit>,
     blocked_by: Vec<String>,
@@ -147,7 +147,7 @@ impl Judgement {
             verdict,
             found: String::new(),
             comparison: None,
-            printed_unit: String::new(),
+            printed_unit: PrintedUnit::default(),
             parts: Vec::new(),
             fit: None,
             blocked_by: Vec::new(),
@@ -246,6 +246,7 @@ fn value(
     };
     let unit = &simulated.unit;
     let (datum, half_unit) = published.converted_to(unit).ok_or_else(|| Absence::Broken(published.unlike(unit)))?;
+    let worth = half_unit / published.half_unit();
     // A feature that vanishes when an input is moved has no half range; it counts as a verdict that was not kept.
     let others: Vec<(&str, Option<Extracted>)> = moved(view, |variant| match from.take(variant) {
         Err(Absence::Nowhere(_)) => Ok(None),
@@ -262,7 +263,7 @@ fn value(
         spread: simulated.spread,
         tolerance_by_hand: by_hand.map(|tolerance| match tolerance.size {
             ToleranceSize::Relative(fraction) => fraction * datum.abs(),
-            ToleranceSize::Absolute(distance) => distance * (half_unit / published.half_unit()),
+            ToleranceSize::Absolute(distance) => distance * worth,
         }),
     };
     let (verdict, remark) = compare::verdict(&comparison, simulated.scale, fitted);
@@ -289,7 +290,7 @@ fn value(
         found += &format!(", most of it `{}`", blocked_by.join("`, `"));
     }
     let robust = robust(&moved);
-    let printed_unit = published.unit().to_owned();
+    let printed_unit = PrintedUnit { symbol: published.unit().to_owned(), worth };
     Ok(Judgement {
         found,
         comparison: Some(comparison),

@@ -5,6 +5,7 @@ use super::text::{significant, symbol};
 use super::view::{Absence, Cell, Line, Source, View};
 use crate::experiment::At;
 use crate::measure::column_words;
+use crate::optimise::{Point, overshoot};
 
 /// A place on the abscissa: half the bracket that surely holds it is twice its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,16 +129,9 @@ impl Line {
     pub(crate) fn maximum(&self) -> Cell {
         let best = self.highest();
         let cell = self.y[best];
-        let overshoot = if best == 0 || best + 1 == self.x.len() {
-            0.0
-        } else {
-            let (left, right) = (self.x[best] - self.x[best - 1], self.x[best + 1] - self.x[best]);
-            let rise = (cell.value - self.y[best - 1].value) / left;
-            let fall = (self.y[best + 1].value - cell.value) / right;
-            let curvature = (fall - rise) / (left + right);
-            let slope = (rise * right + fall * left) / (left + right);
-            if curvature < 0.0 { slope * slope / (-4.0 * curvature) } else { 0.0 }
-        };
+        let point = |i: usize| Some(Point { x: *self.x.get(i)?, y: self.y.get(i)?.value });
+        let beside = best.checked_sub(1).and_then(|before| Some([point(before)?, point(best)?, point(best + 1)?]));
+        let overshoot = beside.map_or(0.0, overshoot);
         Cell { run: libm::hypot(cell.run, overshoot), ..cell }
     }
 

@@ -3,7 +3,7 @@
 //! Half a unit of the last printed digit is the uncertainty of the datum: `2.5` is 2.5 ± 0.05, `1.99e-1 s` is
 //! 0.199 s ± 0.0005 s, `149` is 149 ± 0.5.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::mapping::Reads;
 use crate::experiment::At;
@@ -64,9 +64,19 @@ fn unit(symbol: &str) -> Option<(&'static str, f64)> {
     })
 }
 
-/// A number in the units of the tables, SI, in the unit in which it is published: 0.0071 is 7.1 in mm/s.
-pub(crate) fn in_printed_unit(number: f64, symbol: &str) -> f64 {
-    unit(symbol).map_or(number, |(_, worth)| number / worth)
+/// The unit in which a number is published, and what one of it is in the unit of its column: 0.001 of mm/s beside m/s.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PrintedUnit {
+    /// Empty if the number is dimensionless.
+    pub symbol: String,
+    /// One of it.
+    pub worth: f64,
+}
+
+impl Default for PrintedUnit {
+    fn default() -> Self {
+        Self { symbol: String::new(), worth: 1.0 }
+    }
 }
 
 /// Units in which a number may be printed that is compared with one in `symbol`.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::fit::Fit;
 use super::motion_behind::MotionBehind;
 use super::price::Price;
-use super::printed::Printed;
+use super::printed::{Printed, PrintedUnit};
 use super::text::significant;
 
 /// What became of an entry.
@@ -112,9 +112,9 @@ pub struct Part {
     pub found: String,
     /// Against the published number; none where there is nothing to compare.
     pub comparison: Option<Comparison>,
-    /// The unit in which the number is published; empty if it is dimensionless.
+    /// The unit in which the number is published.
     #[serde(default)]
-    pub printed_unit: String,
+    pub printed_unit: PrintedUnit,
 }
 
 /// An entry with its verdict, ready for a report: plain data, no tables needed.
@@ -139,9 +139,9 @@ pub struct Judged {
     pub found: String,
     /// For values.
     pub comparison: Option<Comparison>,
-    /// The unit in which a value is published; empty if it is dimensionless.
+    /// The unit in which a value is published.
     #[serde(default)]
-    pub printed_unit: String,
+    pub printed_unit: PrintedUnit,
     /// For an entry of several numbers: each with its own verdict. The entry's is the worst of them.
     pub parts: Vec<Part>,
     /// For curves and shapes.
@@ -215,12 +215,12 @@ impl Judged {
     }
 
     /// The same, each with the unit in which its number is published.
-    pub fn comparisons_with_units(&self) -> impl Iterator<Item = (&str, &Comparison, &str)> {
+    pub fn comparisons_with_units(&self) -> impl Iterator<Item = (&str, &Comparison, &PrintedUnit)> {
         let parts = self
             .parts
             .iter()
-            .filter_map(|part| Some((part.name.as_str(), part.comparison.as_ref()?, part.printed_unit.as_str())));
-        self.comparison.iter().map(|comparison| ("", comparison, self.printed_unit.as_str())).chain(parts)
+            .filter_map(|part| Some((part.name.as_str(), part.comparison.as_ref()?, &part.printed_unit)));
+        self.comparison.iter().map(|comparison| ("", comparison, &self.printed_unit)).chain(parts)
     }
 
     /// Whether it would still be `fitted` at both of these relative errors, which are 0 for a claim that holds.

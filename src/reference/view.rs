@@ -451,7 +451,7 @@ impl<'a> View<'a> {
     /// Notes that the best point of a line is its first or its last, unless the parameter can go no further.
     pub(crate) fn note_end(&self, line: &Line, best: usize) {
         let x = line.x[best];
-        let is_inner = best > 0 && best + 1 < line.x.len();
+        let is_inner = best > 0 && best + 1 < line.x.len() || line.x.len() < 2;
         if self.variant != BASELINE || is_inner || x == 0.0 || greatest_of(&line.over) == Some(x) {
             return;
         }

@@ -1,6 +1,6 @@
 //! What the study says beside what came out.
 
-use crate::reference::{Comparison, Judged, MotionBehind, Moved, Price, Role, Verdict, in_printed_unit};
+use crate::reference::{Comparison, Judged, MotionBehind, Moved, Price, PrintedUnit, Role, Verdict};
 use crate::text::number::{compact, signed, significant};
 
 use super::markdown::{Align, MarkdownTable, first_sentence, one_line};
@@ -70,7 +70,7 @@ pub(super) fn outcome(tally: &Tally) -> &'static str {
         agree if agree == evidence => "Stands",
         0 if !tally.has(Verdict::Differs) => "Cannot be decided",
         // Of a few that are decided nothing follows for the many that are not.
-        agree if 2 * (agree + tally.count(Verdict::Differs)) < evidence => "Mostly cannot be decided",
+        agree if 2 * (agree + tally.count(Verdict::Differs)) < evidence => "Mostly undecided",
         0 => "Does not stand",
         agree if agree < tally.count(Verdict::Differs) => "Mostly does not stand",
         _ => "Stands in part",
@@ -290,17 +290,17 @@ pub(super) fn tolerance(judged: &Judged) -> Option<String> {
     Some(widths + &reason)
 }
 
-/// A width of the tables in the unit in which its number is published: `±7.1 mm/s`.
-pub(super) fn plus_minus(width: f64, digits: usize, unit: &str) -> String {
-    format!("±{} {unit}", compact(in_printed_unit(width, unit), digits)).trim_end().to_owned()
+/// A width in a column's unit, in the one in which its number is published: `±7.1 mm/s`.
+pub(super) fn plus_minus(width: f64, digits: usize, unit: &PrintedUnit) -> String {
+    format!("±{} {}", compact(width / unit.worth, digits), unit.symbol).trim_end().to_owned()
 }
 
-fn width(name: &str, comparison: &Comparison, unit: &str) -> Option<String> {
+fn width(name: &str, comparison: &Comparison, unit: &PrintedUnit) -> Option<String> {
     let width = comparison.tolerance_by_hand?;
     let derived = comparison.derived_tolerance();
     let beside = if width > derived { "**loosened** from" } else { "narrower than" };
     let name = if name.is_empty() { String::new() } else { format!("{name} ") };
-    let derived = format!("±{} {unit}", significant(in_printed_unit(derived, unit), 2));
+    let derived = format!("±{} {}", significant(derived / unit.worth, 2), unit.symbol);
     Some(format!("{name}{}, {beside} the derived {}", plus_minus(width, 6, unit), derived.trim_end()))
 }
 

@@ -51,19 +51,14 @@ pub fn diff(movements: &[(String, Movement)], whole: &[String], not_run: &[Strin
     text
 }
 
-/// `; not compared: 379 entries of 95 experiments that have not been run`.
+/// `; not compared: 379 entries without a table that they read`.
 fn not_compared(not_run: &[String]) -> String {
     if not_run.is_empty() {
         return String::new();
     }
     let entries: BTreeSet<&String> = not_run.iter().collect();
-    let experiments: BTreeSet<&str> = not_run.iter().filter_map(|id| Some(id.split_once('/')?.0)).collect();
-    format!(
-        "; not compared: {} of {} that {} not been run",
-        counted(entries.len(), "entry", "entries"),
-        counted(experiments.len(), "experiment", "experiments"),
-        if experiments.len() == 1 { "has" } else { "have" }
-    )
+    let whose = if entries.len() == 1 { "it reads" } else { "they read" };
+    format!("; not compared: {} without a table that {whose}", counted(entries.len(), "entry", "entries"))
 }
 
 fn list<T>(heading: &str, all: &[T], description: usize, line: impl Fn(&T) -> String) -> String {

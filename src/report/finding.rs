@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use crate::reference::{Comparison, Fit, Judged, Verdict};
+use crate::reference::{Comparison, Fit, Judged, PrintedUnit, Verdict};
 use crate::text::number::{compact, signed, significant};
 
 use super::comparison::plus_minus;
@@ -90,14 +90,14 @@ pub(super) fn rerun(one: &Judged) -> String {
     format!("shotdamp run --force {}", one.experiment)
 }
 
-fn distance(name: &str, comparison: &Comparison, unit: &str) -> String {
+fn distance(name: &str, comparison: &Comparison, unit: &PrintedUnit) -> String {
     let name = if name.is_empty() { String::new() } else { format!("{name}: ") };
     let allowed = match comparison.tolerance_by_hand {
         Some(width) => format!("{} set by hand is allowed", plus_minus(width, 3, unit)),
         None => "2 u_val are allowed".to_owned(),
     };
     format!(
-        "{name}E = {}, that is {} u_val; {allowed}. u_val = {} (u_num {}, u_input {}, u_D {}), all in SI units",
+        "{name}E = {}, that is {} u_val; {allowed}. u_val = {} (u_num {}, u_input {}, u_D {}), in the table's unit",
         signed(comparison.error(), 3),
         significant(comparison.deviation(), 2),
         significant(comparison.u_val(), 2),

@@ -9,7 +9,7 @@ use crate::text::words::counted;
 
 /// What the column `chaotic` counts: a twin parts within the cycles of the run, whatever motion that ends in. The page counts the kinds of
 /// motion elsewhere.
-const SENSITIVE: &str = "rows sensitive to initial conditions within the cycles of the run";
+const SENSITIVE: &str = "rows sensitive to initial conditions";
 
 /// The balances on an experiment's page; nothing without a table.
 pub(super) fn section(table: Option<&Table>) -> String {

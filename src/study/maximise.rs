@@ -1,7 +1,7 @@
 //! A point that is looked for over one parameter: the maximum of a measure, or the onset of events.
 //!
 //! For a maximum each round halves the two intervals beside the best point of a grid, so that its place is known to within the
-//! distance to its neighbours. An onset lies between the last point of the grid without an event and the first one with some;
+//! distance to its neighbours, and its value to what a parabola rises between them. An onset lies between the last point of the grid without an event and the first one with some;
 //! as events are certified, halving that interval closes in on it to [`KNOWN`] of the parameter. Where the motion is chaotic, events
 //! begin here and there between two points of the grid, and sooner in a longer run: the onset is then known to no more than their
 //! distance. Values come from [`Evaluate`] as they are: ensemble means where the motion is chaotic.
@@ -12,6 +12,7 @@ use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
 use super::row_failure::RowFailure;
 use crate::experiment::{Maximise, ParameterValue, SearchPoint};
 use crate::measure::Evaluated;
+use crate::optimise::{Point, overshoot};
 use crate::text::words;
 
 /// An onset is known to this share of the parameter.
@@ -77,11 +78,11 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
         let best = best(&tried).ok_or(RowFailure::NoGrid)?;
         let at = tried[best].at;
         let within = neighbours(&tried, best).map(|other| (tried[other].at - at).abs()).fold(0.0, f64::max);
-        let fall = neighbours(&tried, best).map(|other| tried[best].value - tried[other].value).fold(0.0, f64::max);
+        let point = |i: usize| tried.get(i).map(|one| Point { x: one.at, y: one.value });
+        let beside = best.checked_sub(1).and_then(|before| Some([point(before)?, point(best)?, point(best + 1)?]));
         let mut evaluated = tried.swap_remove(best).evaluated;
-        if let Some(measured) = evaluated.measured.get_mut(self.measure) {
-            // A parabola through the three points is higher by no more between them.
-            measured.numerical = libm::hypot(measured.numerical, fall / 8.0);
+        if let (Some(beside), Some(measured)) = (beside, evaluated.measured.get_mut(self.measure)) {
+            measured.numerical = libm::hypot(measured.numerical, overshoot(beside));
         }
         Ok((evaluated, Place { at, within }))
     }
@@ -100,6 +101,7 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
         let first = tried.iter().position(|one| one.value > 0.0).ok_or_else(|| missed(false))?;
         let before = first.checked_sub(1).map(|last| tried[last].at).ok_or_else(|| missed(true))?;
         let mut below = before;
+        let mut is_chaotic = tried[first - 1].evaluated.chaotic;
         let mut above = tried.swap_remove(first);
         for _ in 0..self.maximise.bisections() {
             let at = between(below, above.at);
@@ -107,13 +109,14 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
                 break;
             }
             let tried = self.one(at)?;
+            is_chaotic |= tried.evaluated.chaotic;
             if tried.value > 0.0 {
                 above = tried;
             } else {
                 below = at;
             }
         }
-        let from = if above.evaluated.chaotic { before } else { below };
+        let from = if is_chaotic || above.evaluated.chaotic { before } else { below };
         Ok((above.evaluated, Place { at: above.at, within: above.at - from }))
     }
 

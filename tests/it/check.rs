@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 
 use roxmltree::Document;
-use shotdamp::reference::{Comparison, Judged, Kind, Price, Role, Verdict, accept, parse_reference};
+use shotdamp::reference::{Comparison, Judged, Kind, Price, PrintedUnit, Role, Verdict, accept, parse_reference};
 use shotdamp::report::{CheckView, CheckedEntry, SUMMARY_LIMIT, Trouble, annotations, json, junit, step_summary};
 use shotdamp::text::number::count;
 
@@ -26,7 +26,7 @@ fn judged(id: &str, verdict: Verdict, expected: Verdict) -> Judged {
         fit: None,
         explanation: "Nobody\nknows.".into(),
         blocked_by: Vec::new(),
-        printed_unit: String::new(),
+        printed_unit: PrintedUnit::default(),
         tolerance_reason: None,
         robust: None,
         moved: Vec::new(),

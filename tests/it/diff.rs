@@ -130,7 +130,7 @@ fn after_running_one_experiment_the_others_are_no_differences() {
     fs::remove_file(desk.layout.path("results/ch3-stop.parquet")).unwrap();
     let said = shotdamp(&desk, &["diff"]);
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);
-    let end = "0 differences otherwise; not compared: 1 entry of 1 experiment that has not been run.\n";
+    let end = "0 differences otherwise; not compared: 1 entry without a table that it reads.\n";
     assert!(said.out.ends_with(end) && !said.out.contains("nothing"), "{}", said.out);
     let one = shotdamp(&desk, &["diff", "--only", "ch3-gap"]);
     assert!(one.code == 0 && one.out.ends_with("0 differences otherwise.\n"), "{}{}", one.out, one.err);

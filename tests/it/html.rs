@@ -43,7 +43,7 @@ fn a_file_of_missing_tables_is_announced() {
     let file = desk.layout.path("study.html");
     let said = shotdamp(&desk, &["report", "--html", file.to_str().unwrap()]);
     assert_eq!(said.code, 0);
-    let warning = "warning: 1 of 2 experiments has no table that is up to date: its entries are missing in the file; `shotdamp run` makes it\n";
+    let warning = "warning: 1 of 2 experiments has no table that is up to date: its numbers and figures are not in the file; `shotdamp run` makes it\n";
     assert_eq!(said.err, warning);
 }
 

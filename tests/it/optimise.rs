@@ -310,7 +310,7 @@ fn polishing_ends_at_a_bound_at_an_edge_or_where_it_begins() {
     // The valley crosses x₁ = 0.8 at x₂ = 0.64.
     let narrow = Bounds::new(vec![[-1.0, 0.8], [-1.0, 2.0]]).unwrap();
     let found = polished(&narrow, &[-0.5, 0.5], |x| Some(valley(x)));
-    assert_eq!(found.stopped, Stopped::Converged);
+    assert_eq!(found.stopped, Stopped::Bound);
     assert!((found.point[0] - 0.8).abs() < 1e-12 && (found.point[1] - 0.64).abs() < 1e-8, "{found:?}");
     // Beyond 0.7 the function has no derivative.
     let found = polished(&cube([-2.0, 2.0], 1), &[0.0], |x| {

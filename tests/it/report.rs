@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 
 use shotdamp::experiment::{AboutStudy, AssumptionValue, Finding, value_in_words};
-use shotdamp::reference::{Comparison, Judged, Kind, Price, Role, Verdict};
+use shotdamp::reference::{Comparison, Judged, Kind, Price, PrintedUnit, Role, Verdict};
 use shotdamp::report::{
     AccuracyLinks, AssumptionView, ExperimentView, FigureView, PageView, assumptions as assumptions_page, index,
     overview_svg, page, strip_svg, summary, tolerances,
@@ -42,7 +42,7 @@ fn entry(id: &str, verdict: Verdict) -> Judged {
         fit: None,
         explanation: String::new(),
         blocked_by: Vec::new(),
-        printed_unit: String::new(),
+        printed_unit: PrintedUnit::default(),
         tolerance_reason: None,
         robust: Some((5, 6)),
         moved: Vec::new(),
@@ -230,10 +230,10 @@ fn a_page_of_which_little_is_decided_draws_no_conclusion_from_that() {
         page_of(None, &each.map(|verdict| entry("one", verdict)).collect::<Vec<_>>())
     };
     let few = of([(Verdict::Reproduced, 1), (Verdict::Differs, 2), (Verdict::Blocked, 10)]);
-    let line = "**In short.** Mostly cannot be decided: of 13 statements, 1 agrees, 2 differ, 10 blocked.";
+    let line = "**In short.** Mostly undecided: of 13 statements, 1 agrees, 2 differ, 10 blocked.";
     assert!(few.contains(line), "{few}");
     let none = of([(Verdict::Differs, 2), (Verdict::Undecidable, 6), (Verdict::Blocked, 5)]);
-    assert!(none.contains("**In short.** Mostly cannot be decided: of 13 statements, 0 agree, 2 differ"), "{none}");
+    assert!(none.contains("**In short.** Mostly undecided: of 13 statements, 0 agree, 2 differ"), "{none}");
     let half = of([(Verdict::Reproduced, 1), (Verdict::Differs, 2), (Verdict::Blocked, 3)]);
     assert!(half.contains("**In short.** Mostly does not stand: of 6 statements"), "{half}");
 }
@@ -313,7 +313,7 @@ fn a_tolerance_by_hand_stands_beside_the_verdict() {
     // The study prints mm/s, the table holds m/s.
     let mut judged = judged();
     for one in judged.iter_mut().filter(|one| one.id.ends_with("parting")) {
-        one.printed_unit = "mm/s".into();
+        one.printed_unit = PrintedUnit { symbol: "mm/s".into(), worth: 1e-3 };
     }
     let page = page_of(None, &judged);
     let row = page.lines().find(|line| line.contains("entry-parting")).unwrap();

@@ -206,7 +206,7 @@ pub(crate) fn name(system: &HybridSystem, tape: &Tape, window: usize) -> Result<
                 && !settles
                 && closing(&scale, ends) > STEADY
                 && shows_decay(system, tape, window)
-                && !is_held(system, &scale, tape, window)?
+                && !is_held(system, &scale, tape, window)
             {
                 MotionKind::QuasiPeriodic
             } else {
@@ -230,21 +230,21 @@ fn shows_decay(system: &HybridSystem, tape: &Tape, window: usize) -> bool {
 }
 
 /// True if the run ends next to an orbit that it could not have left, nor come much nearer to, in half of its last `window` cycles: on
-/// its way it looks like a motion that never comes again, next to a period doubling above all.
-fn is_held(system: &HybridSystem, scale: &Scale, tape: &Tape, window: usize) -> Result<bool, EngineError> {
+/// its way it looks like a motion that never comes again, next to a period doubling above all. Without damping no motion is on its way.
+fn is_held(system: &HybridSystem, scale: &Scale, tape: &Tape, window: usize) -> bool {
     let last = tape.ends.len() - 1;
-    for period in 1..=HOLDS.min(last) {
+    let holds = |period: usize| {
         if tape.last(period).any(|cycle| cycle.blurred) {
-            continue;
+            return false;
         }
         let map = Period::new(system, scale, tape.last(period));
-        let orbit = map.orbit(scale.miss(&tape.ends[last - period], &tape.ends[last]))?;
-        let lets_go = libm::pow(1.0 / STEADY, 2.0 * period as f64 / window as f64);
-        if orbit.attracts(lets_go, HELD) {
-            return Ok(true);
-        }
-    }
-    Ok(false)
+        let change = libm::pow(1.0 / STEADY, 2.0 * period as f64 / window as f64);
+        map.orbit(scale.miss(&tape.ends[last - period], &tape.ends[last])).is_ok_and(|orbit| {
+            // Twice as much towards it, since what comes nearer shows less and less.
+            orbit.attracts(change, HELD) && !orbit.attracts(1.0 / (change * change), HELD)
+        })
+    };
+    !system.is_undamped() && (1..=HOLDS.min(last)).any(holds)
 }
 
 /// What the last cycles of a tape went through.

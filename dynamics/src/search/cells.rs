@@ -25,6 +25,8 @@ const SHORT: f64 = 0.12;
 const BEHIND: f64 = 1.1;
 /// Guards beyond which windows are cheaper: they follow the nearest, while cells look at all.
 const MANY: usize = 4;
+/// Roundings of a coefficient of a part of a cell, relative to the largest of the cell.
+const CUT: f64 = 16.0 * f64::EPSILON;
 /// Roundings of a guard's value.
 const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
 
@@ -219,7 +221,8 @@ impl<'a> Piece<'a> {
             // What it does behind the root is no matter.
             let high = BEHIND * guess;
             let part = if high < 1.0 { cut(&b, high)[0] } else { return None };
-            self.falls_once(&part, Signs::of(&part, left_out), is_distance).then_some(high)?
+            let rounding = CUT * b.iter().fold(0.0_f64, |most, b| most.max(b.abs()));
+            self.falls_once(&part, Signs::of(&part, left_out + rounding), is_distance).then_some(high)?
         };
         let [rest_turns, bend] = self.tables.turning(self.shares);
         let bend = bend + 2.0 * self.base[2].abs();
