@@ -402,7 +402,7 @@ fn a_logarithmic_axis_has_three_numbers_at_least() {
     assert_eq!(drawn(1e-4, 8e-3, "m").0, [0.1, 0.2, 0.5, 1.0, 2.0, 5.0]);
     let (numbers, svg) = drawn(1e-4, 8.37e-2, "m");
     assert_eq!(numbers, [0.1, 1.0, 10.0]);
-    assert!(svg.contains(">Gap h (mm)<"), "{svg}");
+    assert!(svg.contains(">Gap clearance h (mm)<"), "{svg}");
     // Where a plain number is longer than its power of ten, within a decade.
     let (_, svg) = drawn(2e-7, 9e-7, "");
     let labels: Vec<String> = lines_of_text(&svg).into_iter().map(|(text, _)| text).collect();

@@ -146,7 +146,7 @@ fn an_optimum_at_the_end_of_the_range_is_said_to_lie_there() {
         judged(&OPTIMUM.replace("force_ratio", of), &table).found
     };
     assert!(!edge(&[0.0, 0.5, 1.0], "damper_x").contains("end of the range"));
-    assert!(edge(&[0.0, 0.5, 0.9], "damper_x").contains("damper x = 0.9"), "{}", edge(&[0.0, 0.5, 0.9], "damper_x"));
+    assert!(edge(&[0.0, 0.5, 0.9], "damper_x").contains("x/Lx = 0.9"), "{}", edge(&[0.0, 0.5, 0.9], "damper_x"));
 }
 
 #[test]

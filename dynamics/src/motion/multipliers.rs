@@ -150,6 +150,11 @@ pub(super) struct NearOrbit {
 }
 
 impl NearOrbit {
+    /// Its largest multiplier is one of a complex pair: what is beside it goes round it.
+    pub fn turns(&self) -> bool {
+        self.multipliers.first().is_some_and(|largest| largest.angle > 0.0 && largest.angle < std::f64::consts::PI)
+    }
+
     /// No multiplier is above `most`, and it is within `near`.
     pub fn attracts(&self, most: f64, near: f64) -> bool {
         self.multipliers.first().is_none_or(|largest| largest.modulus <= most) && self.distance <= near

@@ -240,8 +240,8 @@ fn is_held(system: &HybridSystem, scale: &Scale, tape: &Tape, window: usize) -> 
         let map = Period::new(system, scale, tape.last(period));
         let change = libm::pow(1.0 / STEADY, 2.0 * period as f64 / window as f64);
         map.orbit(scale.miss(&tape.ends[last - period], &tape.ends[last])).is_ok_and(|orbit| {
-            // Twice as much towards it, since what comes nearer shows less and less.
-            orbit.attracts(change, HELD) && !orbit.attracts(1.0 / (change * change), HELD)
+            // No torus goes round an orbit whose neighbours do not. Towards one twice as much is asked for: what comes nearer shows less and less.
+            orbit.attracts(change, HELD) && !(orbit.turns() && orbit.attracts(1.0 / (change * change), HELD))
         })
     };
     !system.is_undamped() && (1..=HOLDS.min(last)).any(holds)
