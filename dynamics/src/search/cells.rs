@@ -1,11 +1,11 @@
 //! The first event of a flow of few blocks, by cells: most segments of one mass with its damper are decided by two or three products.
 //!
-//! Over a cell of D seconds a guard g, over σ to the power that it starts with, is a polynomial p of the seventh degree, and R bounds what that leaves
-//! out ([`crate::flow::cells`]). Bernstein coefficients that all exceed R prove it positive. Positive ones, then doubtful ones, then
-//! negative ones prove that p ± R have one root each, by Descartes' rule; and that of g is the only one if p falls so steeply there that
-//! neither its bend over Newton's last step nor what is left out can turn it. Whatever else is seen is left to windows: near misses,
-//! roots at the same time, long ways. `polish` finds a root to the last digit from the guard alone, so that both
-//! give the same bits.
+//! Over a cell of D seconds a guard g, divided by σ to the power that it starts with, is a polynomial p of the seventh degree, and R bounds
+//! what that leaves out ([`crate::flow::cells`]). Bernstein coefficients that all exceed R prove it positive. Positive ones, then doubtful
+//! ones, then negative ones, of the cell or of its part up to just behind the first root, prove that p ± R have one root each there, by
+//! Descartes' rule; and that of g is the only one if p falls so steeply that neither its bend over Newton's last step nor what is left out can
+//! turn it. Whatever else is seen is left to windows: near misses, roots at the same time, long ways. `polish` finds a root to the last
+//! digit from the guard alone, so that both give the same bits.
 
 use crate::arithmetic::four::Four;
 use crate::contact_state::bank::{Kernels, Phases, Transfer};
@@ -117,8 +117,8 @@ impl Search {
         None
     }
 
-    /// Guards that are further from zero than their signals can move them, one bit each; `None` where one starts as cells do not, or
-    /// where there are many.
+    /// Guards that are further from zero than their signals can move them, one bit each; `None` where one starts downwards, or where
+    /// there are many.
     #[inline(always)]
     fn out_of_reach(&self, motion: Motion<'_>, signals: &Signals, clarity: &Clarity) -> Option<u8> {
         let is_bounded = motion.bank.near_critical.is_empty();

@@ -17,7 +17,7 @@
 //! window is sampled, no crossing stepped over. Where a straight line foresees a root within a short window, that window follows at
 //! once, with all blocks: small proofs would creep up to the root, and a window without the fast blocks cannot show it.
 //!
-//! A flow of few blocks is asked by cells first ([`cells`]), whose tables need no expansion; what they leave open goes to windows.
+//! A flow of few blocks with few guards is asked by cells first ([`cells`]), whose tables need no expansion; what they leave open goes to windows.
 //!
 //! What a root is to the last digit, [`polish`] tells; since no window is seen in it, windows may begin where kernels are cheap, at
 //! [`crate::flow::steps::Steps`].
