@@ -11,9 +11,12 @@ pub struct Point {
     pub y: f64,
 }
 
-/// How far the parabola through three points, in order and the middle one the highest, rises above that; 0 if they lie on a line.
+/// How far the parabola through the highest point of a curve, which stands at `top`, and its neighbours rises above it; 0 if it has but one, and
+/// if they lie on a line. `point` gives the points in order, `None` behind the last.
 #[must_use]
-pub fn overshoot([before, top, behind]: [Point; 3]) -> f64 {
+pub fn overshoot(top: usize, point: impl Fn(usize) -> Option<Point>) -> f64 {
+    let three = || Some([point(top.checked_sub(1)?)?, point(top)?, point(top + 1)?]);
+    let Some([before, top, behind]) = three() else { return 0.0 };
     let (left, right) = (top.x - before.x, behind.x - top.x);
     let rise = (top.y - before.y) / left;
     let fall = (behind.y - top.y) / right;
@@ -31,7 +34,7 @@ mod tests {
         let point = |x: f64| Point { x, y: 5.0 - 2.0 * (x - 1.3) * (x - 1.3) };
         for [left, right] in [[0.4, 0.4], [0.1, 0.9], [0.9, 0.1]] {
             let three = [1.2 - left, 1.2, 1.2 + right].map(point);
-            assert!((three[1].y + overshoot(three) - 5.0).abs() < 1e-14);
+            assert!((three[1].y + overshoot(1, |i| three.get(i).copied()) - 5.0).abs() < 1e-14);
         }
     }
 }

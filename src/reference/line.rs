@@ -130,9 +130,7 @@ impl Line {
         let best = self.highest();
         let cell = self.y[best];
         let point = |i: usize| Some(Point { x: *self.x.get(i)?, y: self.y.get(i)?.value });
-        let beside = best.checked_sub(1).and_then(|before| Some([point(before)?, point(best)?, point(best + 1)?]));
-        let overshoot = beside.map_or(0.0, overshoot);
-        Cell { run: libm::hypot(cell.run, overshoot), ..cell }
+        Cell { run: libm::hypot(cell.run, overshoot(best, point)), ..cell }
     }
 
     /// The largest fall below what was reached before, and its error.

@@ -41,9 +41,9 @@ pub(crate) fn with_unit(x: f64, digits: usize, unit: &str) -> String {
     in_scale_of(x, x, digits, unit)
 }
 
-/// The largest value that a column can have, if it is a parameter that has one.
-pub(crate) fn greatest_of(column: &str) -> Option<f64> {
-    serde_json::from_value::<Parameter>(serde_json::Value::String(column.into())).ok()?.greatest()
+/// The parameter, or the measure, that a column holds.
+pub(crate) fn known<K: DeserializeOwned>(column: &str) -> Option<K> {
+    serde_json::from_value(serde_json::Value::String(column.into())).ok()
 }
 
 /// A number with its unit, in thousandths where the largest of those that it stands beside is shorter so.
@@ -85,9 +85,6 @@ pub(crate) fn listed(values: &[Extracted]) -> Vec<String> {
 
 /// A column as formulas name it: `f′` for `force_ratio`; in words where it has no symbol.
 pub(crate) fn symbol(column: &str) -> String {
-    fn known<K: DeserializeOwned>(column: &str) -> Option<K> {
-        serde_json::from_value(serde_json::Value::String(column.into())).ok()
-    }
     let parameter = known::<Parameter>(column).map(Parameter::symbol);
     let symbol = parameter.or_else(|| known::<Measure>(column).map(Measure::symbol)).unwrap_or_default();
     if symbol.is_empty() { column_words(column) } else { symbol.into() }

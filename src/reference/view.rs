@@ -8,8 +8,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::columns::{Found, find, find_if_any, height, labels, number, parameter};
 use super::selection::{Allowed, Selection, same};
-use super::text::{greatest_of, significant, symbol, with_unit};
-use crate::experiment::assumption_of;
+use super::text::{known, significant, symbol, with_unit};
+use crate::experiment::{Parameter, assumption_of};
 use crate::table::{BASELINE, Data, Table};
 
 /// The solver that is meant where an entry names none.
@@ -452,7 +452,10 @@ impl<'a> View<'a> {
     pub(crate) fn note_end(&self, line: &Line, best: usize) {
         let x = line.x[best];
         let is_inner = best > 0 && best + 1 < line.x.len() || line.x.len() < 2;
-        if self.variant != BASELINE || is_inner || x == 0.0 || greatest_of(&line.over) == Some(x) {
+        if self.variant != BASELINE
+            || is_inner
+            || known::<Parameter>(&line.over).map_or(x == 0.0, |over| over.ends_at(x))
+        {
             return;
         }
         let end = format!("{} = {}", symbol(&line.over), with_unit(x, 4, &line.over_unit));

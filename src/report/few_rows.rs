@@ -41,8 +41,8 @@ pub(super) fn searched(experiment: &Experiment, table: &Table) -> Option<String>
 
 /// That some of the largest values lie at an end of the range, so that there may be larger ones behind it.
 fn beyond(maximise: &Maximise, known: &[(usize, f64)]) -> String {
-    let is_last = |at: f64| at == 0.0 || maximise.over.greatest() == Some(at);
-    let is_end = |at: f64| [maximise.grid.first(), maximise.grid.last()].contains(&Some(&at)) && !is_last(at);
+    let ends = [maximise.grid.first(), maximise.grid.last()];
+    let is_end = |at: f64| ends.contains(&Some(&at)) && !maximise.over.ends_at(at);
     let count = known.iter().filter(|(_, at)| is_end(*at)).count();
     match (maximise.wanted, count) {
         (SearchPoint::Onset, _) | (SearchPoint::Maximum, 0) => String::new(),

@@ -37,9 +37,7 @@ pub fn forecast(experiment: &Experiment, assumptions: &Assumptions) -> Vec<Strin
         if begun.elapsed() > PATIENCE {
             break;
         }
-        let recipes = experiment.recipe_of(case).and_then(|recipe| experiment.recipes_in(&recipe)).unwrap_or_default();
-        // The settings of a mean hardly differ in what they take.
-        let Some(scene) = recipes.first().and_then(|recipe| recipe.resolve(assumptions).ok()) else { continue };
+        let Some(scene) = scene_of(experiment, case, assumptions) else { continue };
         for (cause, warning) in of_scene(experiment, &scene, &case.solvers) {
             if warnings.iter().all(|(known, _)| *known != cause) {
                 warnings.push((cause, of_case(case, warning)));
@@ -60,10 +58,15 @@ pub fn forecast(experiment: &Experiment, assumptions: &Assumptions) -> Vec<Strin
 pub fn transient_left(experiment: &Experiment, assumptions: &Assumptions) -> Option<String> {
     let begun = ThreadTime::now();
     experiment.cases.iter().take_while(|_| begun.elapsed() <= PATIENCE).find_map(|case| {
-        let recipes = experiment.recipe_of(case).and_then(|recipe| experiment.recipes_in(&recipe)).unwrap_or_default();
-        let scene = recipes.first()?.resolve(assumptions).ok()?;
+        let scene = scene_of(experiment, case, assumptions)?;
         transient(experiment, &scene).map(|warning| of_case(case, warning))
     })
+}
+
+/// The scene of a case, if it has one. The settings of a mean hardly differ in what they take.
+fn scene_of(experiment: &Experiment, case: &Case, assumptions: &Assumptions) -> Option<Scene> {
+    let recipe = experiment.recipe_of(case).ok()?;
+    experiment.recipes_in(&recipe).ok()?.first()?.resolve(assumptions).ok()
 }
 
 /// A warning with the case that it is about.

@@ -78,11 +78,10 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
         let best = best(&tried).ok_or(RowFailure::NoGrid)?;
         let at = tried[best].at;
         let within = neighbours(&tried, best).map(|other| (tried[other].at - at).abs()).fold(0.0, f64::max);
-        let point = |i: usize| tried.get(i).map(|one| Point { x: one.at, y: one.value });
-        let beside = best.checked_sub(1).and_then(|before| Some([point(before)?, point(best)?, point(best + 1)?]));
+        let overshoot = overshoot(best, |i| tried.get(i).map(|one| Point { x: one.at, y: one.value }));
         let mut evaluated = tried.swap_remove(best).evaluated;
-        if let (Some(beside), Some(measured)) = (beside, evaluated.measured.get_mut(self.measure)) {
-            measured.numerical = libm::hypot(measured.numerical, overshoot(beside));
+        if let Some(measured) = evaluated.measured.get_mut(self.measure) {
+            measured.numerical = libm::hypot(measured.numerical, overshoot);
         }
         Ok((evaluated, Place { at, within }))
     }
@@ -101,7 +100,7 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
         let first = tried.iter().position(|one| one.value > 0.0).ok_or_else(|| missed(false))?;
         let before = first.checked_sub(1).map(|last| tried[last].at).ok_or_else(|| missed(true))?;
         let mut below = before;
-        let mut is_chaotic = tried[first - 1].evaluated.chaotic;
+        let mut is_chaotic = tried[first - 1..=first].iter().any(|one| one.evaluated.chaotic);
         let mut above = tried.swap_remove(first);
         for _ in 0..self.maximise.bisections() {
             let at = between(below, above.at);
@@ -116,7 +115,7 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
                 below = at;
             }
         }
-        let from = if is_chaotic || above.evaluated.chaotic { before } else { below };
+        let from = if is_chaotic { before } else { below };
         Ok((above.evaluated, Place { at: above.at, within: above.at - from }))
     }
 

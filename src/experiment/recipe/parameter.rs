@@ -221,10 +221,12 @@ impl Parameter {
         matches!(self, Self::ForceRatio | Self::BaseAmplitudeRatio | Self::Force | Self::Impulse)
     }
 
-    /// The largest value that it can have, if there is one.
+    /// Whether it goes no further than this value: the edge of a plate, say. Nothing is below zero.
     #[must_use]
-    pub fn greatest(self) -> Option<f64> {
-        matches!(self, Self::ForceX | Self::ForceY | Self::DamperX | Self::DamperY | Self::ParticleShare).then_some(1.0)
+    pub fn ends_at(self, value: f64) -> bool {
+        let is_share =
+            matches!(self, Self::ForceX | Self::ForceY | Self::DamperX | Self::DamperY | Self::ParticleShare);
+        value == 0.0 || is_share && value == 1.0
     }
 
     /// Unit symbol of its numbers, empty when dimensionless.
