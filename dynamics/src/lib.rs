@@ -11,7 +11,7 @@
 //! | `system` | what is run: structure, particles, faces, drive |
 //! | `contact` | where a particle is; which of the closed contacts push, and what an impact gives |
 //! | `contact_state` | the equations of one contact state, split into 2 × 2 blocks, and what they answer to a load for ever |
-//! | `flow` | the exact motion of one contact state, what is watched of it, its Taylor series and its integrals |
+//! | `flow` | the exact motion of one contact state, what is watched of it, its Taylor series and its integrals, the ways to the next one |
 //! | `states` | contact states that were visited, kept for every run that comes to them again |
 //! | `search` | the first event of a flow, certified by Bernstein enclosures |
 //! | `motion` | which kind of motion a run ends in: multipliers, exponents |
@@ -75,4 +75,4 @@ pub use system::{
 };
 
 /// Changes whenever the same scene may give other bits. A test holds the bits of fixed scenes against it.
-pub const SOLVER_VERSION: u32 = 37;
+pub const SOLVER_VERSION: u32 = 38;

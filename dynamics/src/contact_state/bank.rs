@@ -210,6 +210,12 @@ impl Blocks {
         }
     }
 
+    /// The kernels of a transfer.
+    #[inline(always)]
+    pub(crate) fn kernels_of(&self, Transfer { c, s }: Transfer) -> Kernels {
+        Kernels { c, s, turn: self.root * s }
+    }
+
     /// The first derivatives of shares, as shares.
     #[inline(always)]
     pub(crate) fn derivative(&self, Phases { value, rate }: Phases) -> Phases {
@@ -246,8 +252,7 @@ impl Blocks {
         let c = (1.0 + y * 0.5) + y * y * ((1.0 / 24.0 + y * (1.0 / 720.0)) + y * y * (1.0 / 40_320.0));
         let s =
             t * ((1.0 + y * (1.0 / 6.0)) + y * y * ((1.0 / 120.0 + y * (1.0 / 5040.0)) + y * y * (1.0 / 362_880.0)));
-        let (c, s) = (e * c, e * s);
-        self.joined(first, &Kernels { c, s, turn: self.root * s })
+        self.joined(first, &self.kernels_of(Transfer { c: e * c, s: e * s }))
     }
 
     /// e^(B t₁) e^(B t₂).

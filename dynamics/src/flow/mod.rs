@@ -14,6 +14,7 @@ pub(crate) mod series;
 pub(crate) mod signals;
 pub(crate) mod steps;
 pub(crate) mod sums;
+pub(crate) mod way;
 
 mod doubled;
 
@@ -40,6 +41,7 @@ use crate::flow::parabola::Parabola;
 use crate::flow::series::Series;
 use crate::flow::signals::{Row, Rows};
 use crate::flow::steps::Steps;
+use crate::flow::way::{MOST_BLOCKS, Ways};
 use crate::system::{Contact, DrivePhase, HybridSystem, Particle};
 
 /// One contact state, ready to be propagated.
@@ -82,6 +84,9 @@ pub(crate) struct Flow {
     closed: OnceCell<Option<Closed>>,
     velocity_squares: OnceCell<Vec<VelocitySquare>>,
     dissipation: OnceCell<Dissipation>,
+    /// It may be left for the next flow in block coordinates: these are as many as ask for them, and only the drive moves beside them.
+    pub(crate) has_ways: bool,
+    ways: Ways,
     /// Its place among the states that a run visits.
     pub(crate) place: Cell<usize>,
 }
@@ -156,6 +161,9 @@ impl Flow {
         let bank = bank.of(&blocks);
         // Half cycles leave a contact state before its tables pay.
         let is_visited_often = system.drive.half_cycles.is_none();
+        let (drifts, lasts) = (modes.spectral.drifts(), modes.spectral.lasts);
+        let is_split = is_visited_often && !drifts && !is_resonant && lasts.is_infinite();
+        let has_ways = is_split && blocks.len() <= MOST_BLOCKS;
         let few = is_visited_often && bank.blocks.len() == 1;
         let mut flow = Self {
             slowest,
@@ -164,7 +172,7 @@ impl Flow {
             steps: is_visited_often.then(|| Steps::new(series.pace)),
             series,
             propagators: Propagator::of(propagators, &modes.spectral.matrices, &blocks),
-            drifts: modes.spectral.drifts(),
+            drifts,
             is_resonant,
             blocks,
             own,
@@ -178,6 +186,8 @@ impl Flow {
             closed: OnceCell::new(),
             velocity_squares: OnceCell::new(),
             dissipation: OnceCell::new(),
+            has_ways,
+            ways: Ways::default(),
             place: Cell::new(0),
         };
         flow.rows = rows.of(system, &flow.modes, &flow.blocks, |row, room| flow.row(row, room));
@@ -194,6 +204,7 @@ impl Flow {
             + self.closed.get().and_then(Option::as_ref).map_or(0, Closed::size)
             + self.velocity_squares.get().map_or(0, |rows| rows.iter().map(VelocitySquare::size).sum())
             + self.dissipation.get().map_or(0, Dissipation::size)
+            + self.size_of_ways()
     }
 
     /// Numbers that its coordinates take in whole registers.

@@ -1,20 +1,19 @@
 //! Transfers of shares over whole steps of time, from a table that grows as it is asked.
 //!
-//! Where a window of the search begins is seen in no event, so that it may begin at a whole step: e^(B iδ) is the product of three
-//! entries, e^(B n²hδ) e^(B nmδ) e^(B lδ) with i = n²h + nm + l, where each instant by itself would take an exponential, a sine and a
-//! cosine. With three of them the table of a contact state is small, and those of a run stay in the processor's cache.
+//! A root is found about the whole step that is nearest to it, and where a window of the search begins is seen in no event, so that it
+//! may begin at one: e^(B iδ) is the product of three entries, e^(B n²hδ) e^(B nmδ) e^(B lδ) with i = n²h + nm + l, where each instant by
+//! itself would take an exponential, a sine and a cosine. With three of them the table of a contact state is small, and those of a run
+//! stay in the processor's cache.
 
 use std::cell::RefCell;
 
-use crate::contact_state::bank::{Bank, Kernels, Transfer};
+use crate::contact_state::bank::{Bank, Blocks, Kernels, Transfer};
 use crate::contact_state::block::Block;
 
-/// ρδ, ρ the largest radius of a block: a small part of the shortest window.
-const STEP: f64 = 0.5;
-/// n.
-const MANY: usize = 8;
-/// Entries for multiples of n²δ; later instants are left to whoever asks for them.
-const FAR: usize = 32;
+/// ρδ, ρ the largest radius of a block.
+pub(crate) const STEP: f64 = 0.024;
+/// n; and as many entries for multiples of n²δ: later instants are left to whoever asks for them.
+const MANY: usize = 32;
 
 /// The table of a flow.
 #[derive(Debug)]
@@ -29,7 +28,7 @@ pub(crate) struct Steps {
 #[derive(Debug, Default)]
 struct Known {
     /// Which of them: one bit each.
-    places: u64,
+    places: u128,
     /// Of all blocks, one place after the other.
     entries: Vec<Transfer>,
 }
@@ -53,26 +52,58 @@ impl Steps {
     #[inline(always)]
     pub(crate) fn before(&self, t: f64) -> Option<(Whole, f64)> {
         let steps = t * self.inverse;
-        (steps < (MANY * MANY * FAR) as f64).then(|| {
+        (steps < MANY.pow(3) as f64).then(|| {
+            // By rounding a whole step may come after an instant at which it is.
             let whole = steps as u32;
-            (Whole(whole), f64::from(whole) * self.length)
+            let whole = whole - u32::from(self.time(whole) > t);
+            (Whole(whole), self.time(whole))
         })
+    }
+
+    #[inline(always)]
+    fn time(&self, steps: u32) -> f64 {
+        f64::from(steps) * self.length
+    }
+
+    /// The step at an instant that is a whole one, as its time divided by `length` tells.
+    #[inline(always)]
+    pub(crate) fn at(&self, t: f64) -> Option<Whole> {
+        let steps = t * self.inverse + 0.5;
+        (steps < MANY.pow(3) as f64).then_some(Whole(steps as u32))
     }
 
     /// The transfers of all blocks until then.
     #[inline(always)]
-    pub(crate) fn transfers(&self, bank: &Bank, each: &[Block], Whole(steps): Whole, transfers: &mut [Transfer]) {
+    pub(crate) fn transfers(&self, bank: &Bank, each: &[Block], whole: Whole, transfers: &mut [Transfer]) {
+        self.each(bank, each, whole, transfers, |transfer, _| transfer);
+    }
+
+    /// Their kernels.
+    #[inline(always)]
+    pub(crate) fn kernels(&self, bank: &Bank, each: &[Block], whole: Whole, kernels: &mut [Kernels]) {
+        self.each(bank, each, whole, kernels, |transfer, blocks| blocks.kernels_of(transfer));
+    }
+
+    #[inline(always)]
+    fn each<T>(
+        &self,
+        bank: &Bank,
+        each: &[Block],
+        Whole(steps): Whole,
+        to: &mut [T],
+        of: impl Fn(Transfer, &Blocks) -> T,
+    ) {
         let mut known = self.known.borrow_mut();
         let width = bank.blocks.len();
         let steps = steps as usize;
         let (near, middle, far) = (steps % MANY, steps / MANY % MANY, steps / (MANY * MANY));
         let places = [near, MANY + middle, 2 * MANY + far];
-        let wanted = places.iter().fold(0, |wanted, place| wanted | 1 << place);
+        let wanted = places.iter().fold(0, |wanted, place| wanted | 1_u128 << place);
         if known.places & wanted != wanted {
             self.add(bank, each, places, &mut known);
         }
         let [near, by_middle, by_far] = places.map(|place| &known.entries[place * width..][..width]);
-        let places = transfers.iter_mut().zip(&bank.blocks).zip(near).zip(by_middle.iter().zip(by_far));
+        let places = to.iter_mut().zip(&bank.blocks).zip(near).zip(by_middle.iter().zip(by_far));
         for (((to, blocks), near), (by_middle, by_far)) in places {
             let mut transfer = *near;
             if middle > 0 {
@@ -81,7 +112,7 @@ impl Steps {
             if far > 0 {
                 transfer = blocks.chained(by_far, &transfer);
             }
-            *to = transfer;
+            *to = of(transfer, blocks);
         }
     }
 
@@ -89,7 +120,7 @@ impl Steps {
     fn add(&self, bank: &Bank, each: &[Block], places: [usize; 3], known: &mut Known) {
         let width = bank.blocks.len();
         for place in places {
-            if known.places & 1 << place != 0 {
+            if known.places & 1_u128 << place != 0 {
                 continue;
             }
             let level = (place / MANY).min(2);
@@ -101,7 +132,7 @@ impl Steps {
                 known.entries.resize(entries.end, Transfer::NONE);
             }
             known.entries[entries].iter_mut().zip(&kernels).for_each(|(entry, kernels)| *entry = kernels.transfer());
-            known.places |= 1 << place;
+            known.places |= 1_u128 << place;
         }
     }
 }
@@ -117,9 +148,9 @@ mod tests {
         let each = [[0.0, 1.0, -1000.0, -3.0], [0.0, 1.0, -9.0, -40.0], [0.0, 1.0, 0.0, 0.0]].map(Block::new);
         let bank = Bank::default().of(&each);
         let steps = Steps::new(40.0);
-        for t in [0.0, 0.02, 0.4, 3.0, 20.0] {
+        for t in [0.0, 0.02, 0.4, 3.0, 19.0] {
             let (whole, before) = steps.before(t).expect("the table reaches as far");
-            assert!(before <= t && t < before + steps.length);
+            assert!(before <= t && t - before <= steps.length * (1.0 + 1e-12));
             let (mut chained, mut direct) = ([Transfer::NONE], [Kernels::NONE]);
             steps.transfers(&bank, &each, whole, &mut chained);
             bank.kernels(&each, before, &mut direct);
@@ -133,6 +164,6 @@ mod tests {
                 assert!((chained.rate - direct.rate).abs() < tolerance * (1.0 + block.radius));
             }
         }
-        assert!(steps.before(26.0).is_none());
+        assert!(steps.before(20.0).is_none());
     }
 }

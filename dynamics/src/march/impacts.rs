@@ -105,6 +105,7 @@ impl<E: Effects> March<'_, E> {
     /// After a jump of velocities: decides every contact that the jump has made untenable. `arrived` particles in flight
     /// are at a rigid face, pressed ones at its stop.
     pub(super) fn settle(&mut self, arrived: &[(usize, Side)]) -> Result<(), EngineError> {
+        self.come_out();
         let candidates = if E::ALL { self.collide(arrived)? } else { Vec::new() };
         for j in 0..self.particles.len() {
             // Whose state refers to a rigid face already.
@@ -275,6 +276,7 @@ impl<E: Effects> March<'_, E> {
         if candidates.is_empty() {
             return Ok(());
         }
+        self.come_out();
         let mut holds = vec![true; candidates.len()];
         let mut grips = vec![Grip::default(); candidates.len()];
         let mut turns = vec![0; candidates.len()];

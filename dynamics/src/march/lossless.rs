@@ -53,7 +53,7 @@ impl<E: Effects> March<'_, E> {
         if lack != 0.0 {
             self.flow.move_on(lack, &self.c_end, length, self.level, &mut self.doubled.end);
         }
-        self.arrive(length, end_drive);
+        self.arrive(length, end_drive, None);
         let (places, rates) = self.doubled.end.split_at(self.flow.order);
         self.q.iter_mut().zip(places).for_each(|(q, place)| *q = place.rounded());
         self.rate.iter_mut().zip(rates).for_each(|(rate, of)| *rate = of.rounded());

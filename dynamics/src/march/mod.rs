@@ -29,6 +29,7 @@ use crate::flow::integral::Panels;
 use crate::flow::pair_integral::PairIntegrals;
 use crate::flow::parabola::Parabola;
 use crate::flow::signals::Signals;
+use crate::flow::way::Left;
 use crate::flow::{Flow, Rest};
 use crate::march::reach::OutOfReach;
 use crate::march::visits::Visits;
@@ -65,12 +66,18 @@ pub(crate) struct March<'a, E> {
     slipped: Option<Slipped>,
     /// Some floor and ceiling do not move as one.
     has_walls: bool,
+    /// There are ways between contact states: faces move as one, errors die away, and dashpots stay as they are.
+    has_ways: bool,
+    /// The flow that was left by a way, until the next one is entered: meanwhile `q`, `rate` and what stands behind them are those before.
+    left: Option<Left>,
     /// No error dies away.
     undamped: bool,
     /// Between two jumps of the force the slowest block of the flow in force hardly turns.
     is_brief: bool,
     /// The damping of the flow in force is that of half cycles, which give it another one soon.
     is_passing: bool,
+    /// Between two jumps of the force on average, s.
+    pause: f64,
     /// A time in which nothing can have moved, s.
     nothing: f64,
     averaged: Averaged,
@@ -138,9 +145,13 @@ impl<'a, E: Effects> March<'a, E> {
             smooth: vec![false; count],
             slipped: None,
             has_walls: system.particles.iter().any(Particle::has_walls),
+            has_ways: system.drive.half_cycles.is_none()
+                && !(system.is_undamped() || system.particles.iter().any(Particle::has_walls)),
+            left: None,
             undamped: system.is_undamped(),
             is_brief: false,
             is_passing: false,
+            pause: system.drive.period / system.drive.ticks.len().max(1) as f64,
             nothing: f64::EPSILON * f64::EPSILON * system.drive.period,
             averaged: options.averaged(),
             cycle: 0,

@@ -1,16 +1,19 @@
 //! A segment: the flow of the contact state in force, followed to the next event or to the next jump of the force.
 
+use std::rc::Rc;
+
 use super::March;
 use super::effects::Effects;
 use super::half_cycles::Stage;
 use crate::arithmetic::wide::widened;
 use crate::budget;
-use crate::contact::{Relative, Side};
+use crate::contact::{Change, Crossing, Relative, Side};
 use crate::contact_state::{contact_damping, feels_half_cycles};
 use crate::error::EngineError;
+use crate::flow::way::{BESIDE, Left};
 use crate::search::guards::{self, Contacts};
 use crate::search::{Found, Guard};
-use crate::system::DrivePhase;
+use crate::system::{DrivePhase, Law};
 
 /// Events at one instant beyond which contacts are left alone for a moment, as they undo each other.
 const MOST_EVENTS_AT_AN_INSTANT: u32 = 64;
@@ -50,11 +53,9 @@ impl<E: Effects> March<'_, E> {
             Some(known) => known,
             None => self.states.flow(self.system, &self.contacts, self.equivalent)?,
         };
-        let drive = &self.system.drive;
-        let pause = drive.period / drive.ticks.len().max(1) as f64;
-        self.is_brief = self.flow.is_brief(pause);
+        self.is_brief = self.flow.is_brief(self.pause);
         self.is_passing = E::ALL && self.equivalent.is_some() && feels_half_cycles(self.system, &self.contacts);
-        let width = self.flow.width();
+        let width = self.flow.width() + BESIDE;
         if self.c.len() < width {
             self.c.resize(width, 0.0);
             self.c_end.resize(width, 0.0);
@@ -68,7 +69,18 @@ impl<E: Effects> March<'_, E> {
     #[inline(always)]
     pub(super) fn enter_flow(&mut self, drive: DrivePhase) {
         let flow = &self.flow;
-        let n = self.system.mass.order;
+        if let Some(left) = self.left.take() {
+            if flow.has_ways {
+                let here = self.particles[left.particle];
+                let new = flow.enter_from(&left, &mut self.c_end, self.level, here, &mut self.c);
+                if new > 0 {
+                    self.states.keep(new);
+                }
+                return;
+            }
+            self.leave(&left);
+        }
+        let (flow, n) = (&self.flow, self.system.mass.order);
         for (i, &j) in flow.modes.attached.iter().enumerate() {
             self.q[n + i] = self.particles[j].gap;
             self.rate[n + i] = self.particles[j].rate;
@@ -121,6 +133,7 @@ impl<E: Effects> March<'_, E> {
                 (stuck, flickers, last, blink) = (0, 0, self.time, 2.0 * blink);
             }
         }
+        self.come_out();
         Ok(())
     }
 
@@ -192,7 +205,7 @@ impl<E: Effects> March<'_, E> {
         if self.is_undamped() {
             self.arrive_doubled(length, end_drive, found);
         } else {
-            self.arrive(length, end_drive);
+            self.arrive(length, end_drive, self.goes_straight(length, found));
         }
         self.time = match found {
             Found::Nothing if limit < until - self.time => self.time + limit,
@@ -211,9 +224,48 @@ impl<E: Effects> March<'_, E> {
         Ok(())
     }
 
-    /// The state at the end of a segment.
+    /// The particle whose event ends a segment, if the next flow can be entered from the block coordinates of this one: nothing but the
+    /// contact of that particle with a resilient face changes, and rounding does not have to be taken off.
     #[inline(always)]
-    pub(super) fn arrive(&mut self, length: f64, end_drive: DrivePhase) {
+    fn goes_straight(&self, length: f64, found: Found) -> Option<usize> {
+        let Found::Event { guard, .. } = found else { return None };
+        let able = self.has_ways && self.flow.has_ways && !self.flow.turns_below(guards::SHORT, length);
+        let able = able && self.response.proof.events < MANY_EVENTS;
+        let Guard { particle: j, crossing, .. } = self.search.guards[guard];
+        (able && (!E::ALL || self.presses_or_parts(j, crossing))).then_some(j)
+    }
+
+    /// A crossing at which a particle meets a resilient face, or leaves one that can pull.
+    fn presses_or_parts(&self, j: usize, crossing: Crossing) -> bool {
+        let particle = &self.system.particles[j];
+        let law = |side: Side| side.face(particle).law;
+        match crossing {
+            Crossing::To(side) => !law(side).is_rigid(),
+            Crossing::Own(Change::Releases) => {
+                let pulls = matches!(law(self.contacts[j].side()), Law::Resilient { no_tension: false, .. });
+                pulls && !self.contacts[j].holds(particle)
+            }
+            Crossing::Own(_) | Crossing::Across(_) | Crossing::HalfCycle => false,
+        }
+    }
+
+    /// The structure after all, where no way leads on: more than the contact of one particle is about to change, or the run pauses.
+    #[inline(always)]
+    pub(super) fn come_out(&mut self) {
+        if let Some(left) = self.left.take() {
+            self.leave(&left);
+        }
+    }
+
+    #[cold]
+    fn leave(&mut self, Left { flow, .. }: &Left) {
+        let drive = self.drive_phase(self.time);
+        flow.leave(&self.c_end, 0.0, self.level, drive, &mut self.work, [&mut self.q, &mut self.rate]);
+    }
+
+    /// The state at the end of a segment; only that of the particles, where the flow is left by a way for the event of the `straight` one.
+    #[inline(always)]
+    pub(super) fn arrive(&mut self, length: f64, end_drive: DrivePhase, straight: Option<usize>) {
         let n = self.system.mass.order;
         let flow = &self.flow;
         let mut kept = Vec::new();
@@ -237,7 +289,21 @@ impl<E: Effects> March<'_, E> {
             // What has begun at zero is there no longer.
             self.smooth[j] &= length <= self.nothing;
         }
+        if let Some(particle) = straight {
+            for &j in &flow.modes.attached {
+                let row = flow.rows.row(flow.rows.guards[j].first);
+                let (share, rest) = (row.shares(&self.c_end), row.rest(self.level));
+                self.particles[j] = Relative { gap: rest.p0 + share.value, rate: rest.p1 + share.rate };
+            }
+            self.left = Some(Left { flow: Rc::clone(flow), particle });
+            if !E::TAPED {
+                return;
+            }
+        }
         flow.leave(&self.c_end, length, self.level, end_drive, &mut self.work, [&mut self.q, &mut self.rate]);
+        if straight.is_some() {
+            return;
+        }
         for (j, side) in kept {
             self.particles[j] = Relative::default();
             if side == Side::Ceiling {

@@ -52,7 +52,14 @@ impl<E> Branch<E> {
     ) -> Result<Self, BranchError<E>> {
         let mut path = Path::new(system_at, orbit.cycles, along, parameter);
         let system = path.system(path.first())?;
-        let (shot, distance) = closed(&system, orbit.begin(&system)?, orbit.cycles)?;
+        let (shot, distance) = match closed(&system, orbit.begin(&system)?, orbit.cycles) {
+            Err(error) if is_sensitive(&orbit.multipliers) && !matches!(error, OrbitError::Engine(_)) => {
+                // The digits that it is known to do not lead back to it.
+                let alone = BranchPoint { parameter, orbit: orbit.clone(), special: None };
+                return Ok(Self { points: vec![alone], end: BranchEnd::Sensitive });
+            }
+            closed => closed?,
+        };
         let at = path.begin(shot, distance)?;
         Follower::new(path, along, &at).run(at)
     }
@@ -198,7 +205,9 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
             _ if at.shot.meets_its_ends(period) => BranchEnd::CycleStart,
             BranchEnd::Orbit(OrbitError::Engine(EngineError::Overrun(_))) => otherwise,
             // No step closes when rounding grows above that by itself.
-            BranchEnd::Orbit(_) if at.shot.map.multipliers().is_ok_and(is_sensitive) => BranchEnd::Sensitive,
+            BranchEnd::Orbit(_) if at.shot.map.multipliers().is_ok_and(|all| is_sensitive(&all)) => {
+                BranchEnd::Sensitive
+            }
             otherwise => otherwise,
         };
         self.end(at, end)
@@ -369,7 +378,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
 }
 
 /// In a period, rounding grows above what an orbit closes to.
-fn is_sensitive(multipliers: Vec<Multiplier>) -> bool {
+fn is_sensitive(multipliers: &[Multiplier]) -> bool {
     multipliers.first().is_some_and(|largest| f64::EPSILON * largest.modulus > CLOSED)
 }
 

@@ -13,6 +13,7 @@ use super::{Clarity, Guard, Root, Search, Start};
 use crate::contact_state::bank::Kernels;
 use crate::flow::series::Span;
 use crate::flow::signals::{Signals, Watched};
+use crate::flow::steps::STEP;
 use crate::search::polynomial::nearest_root;
 use crate::search::survey::Motion;
 use crate::search::window::Window;
@@ -21,8 +22,6 @@ use crate::search::window::Window;
 const SHORT_HOP: f64 = 0.02;
 /// radius·δ below which the local expansion of a guard, to the seventh, is exact to rounding.
 const NEAR: f64 = 0.03;
-/// radius·δ between the instants that guards are expanded about.
-const STEP: f64 = 0.8 * NEAR;
 /// Whole steps that are asked which of them is nearest to the root; two may take turns.
 const DISPUTES: u32 = 4;
 /// Steps of [`STEP`] beyond which a time is not rounded to one.
@@ -93,7 +92,12 @@ impl Search {
     ) -> AboutStep {
         let step = STEP * self.window_factor * motion.series.unit;
         let time = nearest_step(guess, step);
-        motion.kernels(time, &mut self.trial);
+        let steps = motion.steps.filter(|_| self.window_factor == 1.0);
+        if let Some((steps, whole)) = steps.and_then(|steps| Some((steps, steps.at(time)?))) {
+            steps.kernels(motion.bank, motion.each, whole, &mut self.trial);
+        } else {
+            motion.kernels(time, &mut self.trial);
+        }
         let local = self.local(motion, bracket, time);
         let scaled = nearest_root(&local);
         let delta = scaled * motion.series.unit;

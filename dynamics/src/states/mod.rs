@@ -55,7 +55,7 @@ struct Driven {
     /// What it kept when it was counted, and whether contact states have come since.
     counted: Cell<usize>,
     grown: Cell<bool>,
-    /// Numbers of flows when they were built, since it last forgot: about what it keeps.
+    /// Numbers of flows when they were built, and of the ways between them, since it last forgot: about what it keeps.
     built: Cell<usize>,
     /// Some of them, each where its code leads.
     at_hand: RefCell<Vec<Option<AtHand>>>,
@@ -154,6 +154,13 @@ impl States {
             self.0.at_hand.borrow_mut()[place(code)] = Some(AtHand { code, equivalent, flow: Rc::clone(&flow) });
         }
         Ok(flow)
+    }
+
+    /// Takes note of so many numbers that a contact state keeps from now on.
+    #[cold]
+    pub(crate) fn keep(&self, numbers: usize) {
+        self.0.grown.set(true);
+        self.0.built.set(self.0.built.get() + numbers);
     }
 
     #[cold]
