@@ -114,7 +114,10 @@ impl Total {
         let all = capitalised(&about((self.seconds / threads as f64).max(self.longest)));
         Some(match self.unknown {
             0 => all,
-            unknown => format!("{all}, and {unknown} experiments of which no time is known,"),
+            unknown => {
+                let others = counted(unknown, "experiment", "experiments");
+                format!("{all}, and {others} of which no time is known,")
+            }
         })
     }
 }

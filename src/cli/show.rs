@@ -20,7 +20,7 @@ use crate::dynamics::{Allowance, Limit, Until, in_words};
 use crate::experiment::{
     Assumptions, Case, Continuation, Experiment, GapRecipe, Given, Recipe, RowSource, value_in_words,
 };
-use crate::measure::Settings;
+use crate::measure::{Settings, rounded};
 use crate::report::{LastVerdicts, VERDICTS, scenes};
 use crate::scene::{Scene, effects};
 use crate::study::{Item, Layout, State, Study, Texts, Untried, forecast};
@@ -225,6 +225,7 @@ fn first_scene(assumptions: &Assumptions, experiment: &Experiment) -> String {
     };
     let recipe = first.and_then(|case| experiment.recipe_of(case).ok());
     let scene = recipe.as_ref().and_then(|recipe| recipe.resolve(assumptions).ok());
+    let scene = scene.map(|scene| rounded(scene, &experiment.settings));
     let case = first.map(|case| case.describe()).filter(|case| !case.is_empty());
     let mut text = format!("\nScene{}\n", case.map_or_else(String::new, |case| format!(" of the {which} ({case})")));
     for line in scene.as_ref().map(Scene::describe).unwrap_or_default() {

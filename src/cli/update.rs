@@ -11,9 +11,7 @@ use super::output::{print, print_error, print_progress, print_unread, print_warn
 use super::select::{Chosen, Found, choose, matched};
 use super::simulate::{How, Ran, held, print_failures, simulate};
 use crate::report::{INDEX, Judgement, Published, doubts, judge_all, publish, report_of, summary_of};
-use crate::study::{
-    Item, Layout, Lock, RunTimes, STUDY, Snapshot, State, Study, remove_journals, save, transient_left,
-};
+use crate::study::{Item, Layout, Lock, RunTimes, STUDY, Snapshot, State, Study, before_run, remove_journals, save};
 use crate::text::words::counted;
 
 /// Brings the chosen experiments up to date.
@@ -45,7 +43,7 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     if !args.choice.is_all() {
         for item in &todo {
             let experiment = &item.source.experiment;
-            if let Some(warning) = transient_left(experiment, &study.sheet.assumptions()) {
+            for warning in before_run(experiment, &study.sheet.assumptions()) {
                 print_progress(&format!("warning: {}: {warning}\n", experiment.id));
             }
         }

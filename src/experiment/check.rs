@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::recipe::{AssumptionName, Assumptions, ExcitationKind, Parameter, ParameterValue, Part, RecipeError};
-use crate::dynamics::Until;
+use crate::dynamics::{EngineError, Until};
 use crate::measure::{CycleSpec, EnergySpec, Measure, Settings, ShapeSpec, SolverChoice, Tolerance, TraceSpec, Under};
 use crate::scene::Scene;
 
@@ -500,7 +500,7 @@ impl Checks<'_> {
         for recipe in all {
             let scene = recipe.resolve(self.assumptions)?;
             steps(&scene, case, &experiment.settings)?;
-            remembers(&scene, case)?;
+            remembers(&scene, case, experiment)?;
             boxed(&scene, experiment)?;
         }
         Ok(())
@@ -571,8 +571,16 @@ impl From<StepError> for Refusal {
 }
 
 /// A run whose damping follows from the half cycle before has more to carry on than places and rates.
-fn remembers(scene: &Scene, case: &Case) -> Result<(), Refusal> {
-    if case.direction.is_some() && scene.has_equivalent_viscous_damping() {
+fn remembers(scene: &Scene, case: &Case, experiment: &Experiment) -> Result<(), Refusal> {
+    if !scene.has_equivalent_viscous_damping() {
+        return Ok(());
+    }
+    let needs_name = |measure: &Measure| measure.needs_motion() || measure.needs_settled();
+    let is_named = experiment.settings.until == Until::Settled || experiment.measures.iter().any(needs_name);
+    if is_named && case.solvers.contains(&SolverChoice::EventDriven) {
+        return Err(EngineError::DampingWithMemory.to_string().into());
+    }
+    if case.direction.is_some() {
         let message =
             "equivalent viscous damping follows from the half cycle before, which `from: last` does not carry on";
         return Err(String::from(message).into());

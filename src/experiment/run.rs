@@ -127,8 +127,10 @@ fn given_run(at: At<'_>, sheet: &AssumptionSheet) -> Option<GivenRun> {
     let round_period_to =
         keys.optional("round_period_to", "The period is rounded to this", |at| at.above_zero(Dimension::Time));
     let perturbed = "Perturbed starts where the motion is chaotic; 32 members unless stated";
-    let ensemble = keys
-        .optional("ensemble", perturbed, |at| if at.is_word("none") { Some(0) } else { at.count("members", 10_000) });
+    let ensemble = keys.optional("ensemble", perturbed, |at| {
+        let single = "an ensemble has two members or more: write `ensemble: none` for a single run";
+        if at.is_word("none") { Some(0) } else { at.count_from(2, "members", 10_000, single) }
+    });
     let moved = keys.optional("sensitivity", "Assumptions that are moved, or none", |at| {
         if at.is_word("none") {
             return Some(BTreeMap::new());

@@ -36,12 +36,9 @@ pub fn index(
     let mut text = head(about);
     text += &headline::section(about, experiments);
     text += &reading::section();
-    text += "## Every verdict\n\nOne cell for each number or claim; below, each that does not agree is linked, bold where it is held out.\n\n";
-    text += &format!("![Verdicts by chapter]({STRIP})\n\n");
-    text += &strip::links(about, experiments);
-    text += &format!(
-        "<details open><summary>All numbers: S/D with bars of ± tolerance/D, and |E|/u_val</summary>\n\n![Numbers of the study]({OVERVIEW})\n\n</details>\n\n"
-    );
+    if experiments.iter().any(|view| !view.judged.is_empty()) {
+        text += &every_verdict(about, experiments);
+    }
     text += &chapter::tables(about, experiments);
     let total: f64 = experiments.iter().filter_map(|view| view.seconds).sum();
     if let Some(Machine { processor, threads, system, build }) = machine {
@@ -56,4 +53,17 @@ pub fn index(
         text += &format!(" · [{title}]({link})");
     }
     text + "\n"
+}
+
+/// Cells of all verdicts, and bars of all numbers.
+fn every_verdict(about: &AboutStudy, experiments: &[ExperimentView<'_>]) -> String {
+    let mut text = String::from(
+        "## Every verdict\n\nOne cell for each number or claim; below, each that does not agree is linked, bold where it is held out.\n\n",
+    );
+    text += &format!("![Verdicts by chapter]({STRIP})\n\n");
+    text += &strip::links(about, experiments);
+    text += &format!(
+        "<details open><summary>All numbers: S/D with bars of ± tolerance/D, and |E|/u_val</summary>\n\n![Numbers of the study]({OVERVIEW})\n\n</details>\n\n"
+    );
+    text
 }

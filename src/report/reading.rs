@@ -7,7 +7,7 @@ const SYMBOLS: &str = "\
 | --- | --- |
 | ψ | velocity ratio: RMS velocity without damper over RMS velocity with it; above 1 the damper helps |
 | η | displacement ratio: the same with the standard deviation of the displacement |
-| f′ = F/(m g) | dimensionless forcing amplitude: force F over the weight of the base mass m |
+| f′ = F/(m g) | dimensionless forcing amplitude: force F over the weight of the base mass m; an impulse is J = f′ m g τ, with τ = 1/ω unless the assumptions state another time |
 | ω′ = ω/ωn | frequency ratio: forcing frequency over the natural frequency ωn = √(ks/m) |
 | m′ | mass ratio: mass of the damper, particle and enclosure, over that of the structure; with one mass, of the particle over the base, mp/m |
 | c′ = c/(2 √(ks m)) | structural damping ratio |

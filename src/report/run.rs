@@ -151,6 +151,7 @@ fn searches(optimise: &Optimise) -> String {
     let mut text = format!("- {count} varied from {}.\n", joined(&bounds));
     let seeds: Vec<String> = optimise.seeds.iter().map(u32::to_string).collect();
     let seeds = format!("{} {}", if seeds.len() == 1 { "seed" } else { "seeds" }, joined(&seeds));
+    let is_beside = optimise.searches.iter().any(|search| matches!(search, Search::Genetic { .. }));
     for search in &optimise.searches {
         text += &match search {
             Search::Genetic { population, elites, crossover, .. } => format!(
@@ -160,7 +161,8 @@ fn searches(optimise: &Optimise) -> String {
                 ends(optimise),
                 if optimise.two_opt { " 2-opt then swaps pairs of its gaps." } else { "" }
             ),
-            Search::CmaEs { .. } => format!("- CMA-ES, on as many evaluations; {seeds}.\n"),
+            Search::CmaEs { .. } if is_beside => format!("- CMA-ES, on as many evaluations; {seeds}.\n"),
+            Search::CmaEs { .. } => format!("- CMA-ES; {seeds}. It ends {}.\n", ends(optimise)),
             Search::Dense { points, refine, .. } => format!(
                 "- Dense search: every combination of {points} values a gap, then {} around the best.\n",
                 counted(*refine as usize, "finer grid", "finer grids")
@@ -229,7 +231,10 @@ fn cases(experiment: &Experiment) -> String {
         None => format!("{cases}{over}"),
         Some(maximise) => {
             let ends = match (maximise.grid.first(), maximise.grid.last()) {
-                (Some(first), Some(last)) => format!(" between {} and {}", compact(*first, 4), compact(*last, 4)),
+                (Some(first), Some(last)) => {
+                    let [first, last] = [first, last].map(|end| quantity(*end, maximise.over.unit(), 4));
+                    format!(" between {first} and {last}")
+                }
                 _ => String::new(),
             };
             let [measure, along] =

@@ -25,7 +25,8 @@ impl Scene {
             lines.push(format!("gravity: {}", value(self.gravity, "m/s²")));
         }
         lines.extend(self.dampers.iter().map(|damper| damper.describe(&sides)));
-        lines.push(self.excitation.describe() + &place(self.force_at, &sides));
+        let at = if self.excitation.is_silent() { String::new() } else { place(self.force_at, &sides) };
+        lines.push(self.excitation.describe() + &at);
         if !sides.is_empty() {
             lines.push(self.observed.describe(&sides));
         }
@@ -125,6 +126,7 @@ fn place(at: Point, sides: &[f64]) -> String {
 impl Excitation {
     fn describe(&self) -> String {
         match self {
+            Self::SingleImpulse { impulse: 0.0, .. } => "no force".into(),
             Self::SingleImpulse { impulse, .. } => format!("one impulse of {} at t = 0", value(*impulse, "N s")),
             Self::ImpulseTrain { impulse, period } => {
                 format!("impulses of {} every {}", value(*impulse, "N s"), value(*period, "s"))

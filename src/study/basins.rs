@@ -185,11 +185,20 @@ fn names(basins: &[Vec<usize>], endings: &[Ending]) -> Vec<String> {
     (0..basins.len()).map(of_name).collect()
 }
 
-/// Of each motion whether no other one has a smaller RMS velocity, two mirror images alike; what has not settled is none.
+/// Of each motion whether no other one has a smaller RMS velocity, two mirror images alike, by no more than those of one motion lie
+/// apart; what has not settled is none.
 fn best(basins: &[Vec<usize>], endings: &[Ending]) -> Vec<bool> {
-    let settled = |place: usize| endings[basins[place][0]].motion.kind != MotionKind::NotSettled;
-    let speeds = basins.iter().enumerate().map(|(place, numbers)| settled(place).then(|| speed(numbers, endings)));
-    let speeds: Vec<Option<f64>> = speeds.collect();
-    let least = speeds.iter().flatten().copied().fold(f64::INFINITY, f64::min);
-    speeds.iter().map(|speed| speed.is_some_and(|speed| speed <= least * (1.0 + ALIKE))).collect()
+    let settled = |numbers: &[usize]| endings[numbers[0]].motion.kind != MotionKind::NotSettled;
+    let all = || {
+        basins
+            .iter()
+            .filter(|numbers| settled(numbers))
+            .map(|numbers| [speed(numbers, endings), difference(numbers, endings)])
+    };
+    let [least, apart] = all().min_by(|one, other| one[0].total_cmp(&other[0])).unwrap_or([f64::NAN; 2]);
+    let is_best = |numbers: &Vec<usize>| {
+        let known = ALIKE.max(apart).max(difference(numbers, endings));
+        settled(numbers) && speed(numbers, endings) <= least * (1.0 + known)
+    };
+    basins.iter().map(is_best).collect()
 }

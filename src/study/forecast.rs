@@ -31,12 +31,28 @@ const PATIENCE: Duration = Duration::from_millis(300);
 /// Warnings, each once, with the first case that it is about.
 #[must_use]
 pub fn forecast(experiment: &Experiment, assumptions: &Assumptions) -> Vec<String> {
+    let limit = Limit { time: PATIENCE, ..Limit::default() };
+    let missed = Allowance::new(limit).simulate(|| missed(experiment, assumptions, PATIENCE));
+    of_scenes(experiment, assumptions)
+        .into_iter()
+        .map(|(_, warning)| warning)
+        .chain(transient_left(experiment, assumptions))
+        .chain(missed.into_iter().map(|(case, warning)| of_case(&case, warning)))
+        .collect()
+}
+
+/// Those that a run begins with: what may never end, and averages that begin too early.
+#[must_use]
+pub fn before_run(experiment: &Experiment, assumptions: &Assumptions) -> Vec<String> {
+    let endless = of_scenes(experiment, assumptions).into_iter().filter(|(cause, _)| *cause == Cause::Bounces);
+    endless.map(|(_, warning)| warning).chain(transient_left(experiment, assumptions)).collect()
+}
+
+/// Warnings of the scenes of an experiment, each once, with the first case that it is about.
+fn of_scenes(experiment: &Experiment, assumptions: &Assumptions) -> Vec<(Cause, String)> {
     let begun = ThreadTime::now();
     let mut warnings: Vec<(Cause, String)> = Vec::new();
-    for case in &experiment.cases {
-        if begun.elapsed() > PATIENCE {
-            break;
-        }
+    for case in experiment.cases.iter().take_while(|_| begun.elapsed() <= PATIENCE) {
         let Some(scene) = scene_of(experiment, case, assumptions) else { continue };
         for (cause, warning) in of_scene(experiment, &scene, &case.solvers) {
             if warnings.iter().all(|(known, _)| *known != cause) {
@@ -44,23 +60,17 @@ pub fn forecast(experiment: &Experiment, assumptions: &Assumptions) -> Vec<Strin
             }
         }
     }
-    let limit = Limit { time: PATIENCE, ..Limit::default() };
-    let missed = Allowance::new(limit).simulate(|| missed(experiment, assumptions, PATIENCE));
     warnings
-        .into_iter()
-        .map(|(_, warning)| warning)
-        .chain(missed.into_iter().map(|(case, warning)| of_case(&case, warning)))
-        .collect()
 }
 
-/// The warning that averages begin while much of the free vibration is left, with the first case that it is about.
-#[must_use]
-pub fn transient_left(experiment: &Experiment, assumptions: &Assumptions) -> Option<String> {
+/// The warning that averages begin while much of the free vibration is left, with the case in which it dies away most slowly.
+fn transient_left(experiment: &Experiment, assumptions: &Assumptions) -> Option<String> {
     let begun = ThreadTime::now();
-    experiment.cases.iter().take_while(|_| begun.elapsed() <= PATIENCE).find_map(|case| {
-        let scene = scene_of(experiment, case, assumptions)?;
-        transient(experiment, &scene).map(|warning| of_case(case, warning))
-    })
+    let cases = experiment.cases.iter().take_while(|_| begun.elapsed() <= PATIENCE);
+    let decays =
+        cases.filter_map(|case| Some((case, decay_a_cycle(experiment, &scene_of(experiment, case, assumptions)?)?)));
+    let (case, decay) = decays.min_by(|(_, one), (_, other)| one.total_cmp(other))?;
+    transient(experiment.settings.skip, decay).map(|warning| of_case(case, warning))
 }
 
 /// The scene of a case, if it has one. The settings of a mean hardly differ in what they take.
@@ -83,7 +93,6 @@ enum Cause {
     Dampers,
     Modes,
     Bounces,
-    Transient,
     Damping,
 }
 
@@ -102,7 +111,6 @@ fn of_scene(experiment: &Experiment, scene: &Scene, solvers: &[SolverChoice]) ->
             warnings.push((Cause::Steps, format!("{steps} fixed steps take about {minutes} min a run")));
         }
     }
-    warnings.extend(transient(experiment, scene).map(|warning| (Cause::Transient, warning)));
     warnings.extend(overdamped(scene).map(|warning| (Cause::Damping, warning)));
     let count = scene.dampers.len();
     if count >= MANY_DAMPERS {
@@ -147,9 +155,9 @@ fn overdamped(scene: &Scene) -> Option<String> {
     })
 }
 
-/// What is left of the first mode's free vibration where averages begin, e^(−a t) without dampers: a = c/(2 m), above critical damping
-/// that of the slower exponential. The averages carry it along, and their uncertainty does not know of it.
-fn transient(experiment: &Experiment, scene: &Scene) -> Option<String> {
+/// How the first mode's free vibration dies away in a cycle of the drive without dampers, e^(−a t): a = c/(2 m), above critical damping
+/// that of the slower exponential. `None` where nothing is averaged after it.
+fn decay_a_cycle(experiment: &Experiment, scene: &Scene) -> Option<f64> {
     let Settings { skip, until, .. } = experiment.settings;
     let averages = !experiment.measures.iter().all(|measure| measure.is_modal());
     if skip == 0 || until == Until::Settled || scene.is_at_rest() || !averages {
@@ -157,7 +165,12 @@ fn transient(experiment: &Experiment, scene: &Scene) -> Option<String> {
     }
     let [half, square] = first_mode(scene);
     let exponent = if half * half > square { square / (half + (half * half - square).sqrt()) } else { half };
-    let decay = exponent * scene.excitation.period();
+    Some(exponent * scene.excitation.period())
+}
+
+/// What is left of a free vibration that dies away so in a cycle, where averages begin. These carry it along, and their uncertainty does
+/// not know of it.
+fn transient(skip: u32, decay: f64) -> Option<String> {
     let left = libm::exp(-decay * f64::from(skip));
     (left > LEFT).then(|| {
         let enough = (-libm::log(LEFT) / decay).ceil();

@@ -30,6 +30,15 @@ pub(super) struct Place {
     pub within: f64,
 }
 
+/// The point that was looked for.
+pub(super) struct Sought {
+    /// Everything measured there.
+    pub evaluated: Evaluated,
+    pub place: Place,
+    /// How far the measure that is maximised may rise above its value there, between the points beside it.
+    pub rise: f64,
+}
+
 /// A point that was tried: the parameter's value, the measure that is maximised, everything measured.
 struct Tried {
     at: f64,
@@ -57,14 +66,14 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
     /// # Errors
     /// The reason of the first point that has no number: a maximum over part of a range is none. Beyond an onset none is asked for.
     /// [`RowFailure::NoOnset`] where all points of the grid, or none, have events.
-    pub(super) fn found(&self) -> Result<(Evaluated, Place), RowFailure> {
+    pub(super) fn found(&self) -> Result<Sought, RowFailure> {
         match self.maximise.wanted {
             SearchPoint::Maximum => self.maximum(),
             SearchPoint::Onset => self.onset(),
         }
     }
 
-    fn maximum(&self) -> Result<(Evaluated, Place), RowFailure> {
+    fn maximum(&self) -> Result<Sought, RowFailure> {
         let mut tried = self.all(&self.maximise.grid)?;
         tried.sort_by(|a, b| a.at.total_cmp(&b.at));
         tried.dedup_by(|a, b| a.at == b.at);
@@ -78,16 +87,12 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
         let best = best(&tried).ok_or(RowFailure::NoGrid)?;
         let at = tried[best].at;
         let within = neighbours(&tried, best).map(|other| (tried[other].at - at).abs()).fold(0.0, f64::max);
-        let overshoot = overshoot(best, |i| tried.get(i).map(|one| Point { x: one.at, y: one.value }));
-        let mut evaluated = tried.swap_remove(best).evaluated;
-        if let Some(measured) = evaluated.measured.get_mut(self.measure) {
-            measured.numerical = libm::hypot(measured.numerical, overshoot);
-        }
-        Ok((evaluated, Place { at, within }))
+        let rise = overshoot(best, |i| tried.get(i).map(|one| Point { x: one.at, y: one.value }));
+        Ok(Sought { evaluated: tried.swap_remove(best).evaluated, place: Place { at, within }, rise })
     }
 
     /// The smallest value of the parameter at which the measure is above zero, as far as the grid tells.
-    fn onset(&self) -> Result<(Evaluated, Place), RowFailure> {
+    fn onset(&self) -> Result<Sought, RowFailure> {
         let mut tried = Vec::new();
         // What lies beyond the first point with events is not asked for.
         for points in self.maximise.grid.chunks(AT_ONCE) {
@@ -116,7 +121,7 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
             }
         }
         let from = if is_chaotic { before } else { below };
-        Ok((above.evaluated, Place { at: above.at, within: above.at - from }))
+        Ok(Sought { evaluated: above.evaluated, place: Place { at: above.at, within: above.at - from }, rise: 0.0 })
     }
 
     /// Several points; of several failures the first in order is reported, not the first in time.

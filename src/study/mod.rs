@@ -63,7 +63,7 @@ pub use canonical::{Change, fingerprint};
 pub use evaluate::{Array, Engine, Evaluate, Simulation};
 pub use event::{Event, EventHandler, IgnoreEvents, Left};
 pub use extent::Extent;
-pub use forecast::{forecast, transient_left};
+pub use forecast::{before_run, forecast};
 pub use gather::{GatherError, gather};
 pub use inputs::Inputs;
 pub use job::runs_of_a_row;

@@ -90,7 +90,7 @@ impl Reason {
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NeverRun => write!(f, "it has not been run"),
+            Self::NeverRun => write!(f, "it has not been run to its end"),
             Self::RecordUnreadable(what) => write!(f, "its record cannot be used: {what}"),
             Self::Changed { file, change } => {
                 let Change { path, old, new } = change;

@@ -8,7 +8,7 @@ use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
 use super::event::{Event, EventHandler};
 use super::job::{Job, evaluations, jobs, measures_need_trace};
 use super::limited::Limited;
-use super::maximise::Along;
+use super::maximise::{Along, Sought};
 use super::mean::Averaging;
 use super::row_failure::RowFailure;
 use super::row_fingerprint::RowFingerprints;
@@ -214,14 +214,17 @@ fn simulate(
     let trace = simulation.trace.filter(|_| measures_need_trace(&experiment.measures));
     let shape = simulation.shape.filter(|_| needs_shape(experiment));
     let look = Simulation { trace, energies: None, shape, each_cycle: None, rigour: Rigour::Look, ..simulation };
-    let (found, place) = Along { evaluate, simulation: look, maximise, measure, done }.found()?;
-    if job.variant != 0 {
-        return Ok(Row { evaluated: found, place: Some(place) });
+    let Sought { mut evaluated, place, rise } =
+        Along { evaluate, simulation: look, maximise, measure, done }.found()?;
+    if job.variant == 0 {
+        // The row itself is a result: the point once more, with all that proves it.
+        let mut there = recipe.clone();
+        there.set(maximise.over, crate::experiment::ParameterValue::Number(place.at))?;
+        evaluated = evaluate_guarded(evaluate, &Simulation { recipe: &there, ..simulation })?;
+        done();
     }
-    // The row itself is a result: the point once more, with all that proves it.
-    let mut there = recipe.clone();
-    there.set(maximise.over, crate::experiment::ParameterValue::Number(place.at))?;
-    let evaluated = evaluate_guarded(evaluate, &Simulation { recipe: &there, ..simulation })?;
-    done();
+    if let Some(measured) = evaluated.measured.get_mut(measure) {
+        measured.numerical = libm::hypot(measured.numerical, rise);
+    }
     Ok(Row { evaluated, place: Some(place) })
 }

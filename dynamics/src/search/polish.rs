@@ -179,7 +179,8 @@ impl Search {
             let root = delta * motion.series.pace;
             let (slope, bend, third) = (slope(local, root), bend(local, root), third(local, root));
             let turn = bend.abs() + (bend * bend + 2.0 * (slope * third).abs()).sqrt();
-            clarity.margin = clarity.margin.min(slope * slope / turn.max(f64::MIN_POSITIVE));
+            let beyond = if slope == 0.0 { 0.0 } else { slope * slope / turn };
+            clarity.margin = clarity.margin.min(beyond);
         }
     }
 

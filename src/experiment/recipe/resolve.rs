@@ -274,9 +274,12 @@ impl DamperRecipe {
         };
         at_least("the particle's mass", mass, 0.0)?;
         if mass == 0.0 && resilient {
-            return Err(RecipeError::OutOfRange(
-                "a damper without mass on a beam or plate is none: write `dampers: without` in the sweep".into(),
-            ));
+            let needs = if base.kind.is_lumped() {
+                "a particle without mass cannot press into a resilient surface: give it a mass, however small"
+            } else {
+                "a damper without mass on a beam or plate is none: write `dampers: without` in the sweep"
+            };
+            return Err(RecipeError::OutOfRange(needs.into()));
         }
         Ok(mass)
     }

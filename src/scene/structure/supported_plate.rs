@@ -137,8 +137,8 @@ impl Model for SupportedPlate {
         let value = |x, unit| quantity(x, unit, 5);
         format!(
             "simply supported plate: {} by {} by {}, {}, ν = {}, {}, λ = {}, {} modes",
-            value(self.width, "m"),
             value(self.length, "m"),
+            value(self.width, "m"),
             value(self.thickness, "m"),
             value(self.youngs_modulus, "Pa"),
             compact(self.poisson_ratio, 5),
