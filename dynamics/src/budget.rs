@@ -272,6 +272,30 @@ pub(crate) fn go_back_to(events: u64) {
     EVENTS.set(events);
 }
 
+/// Makes a run that may have so many events, as far as the simulation has room for them. One that has more is broken off, and its events
+/// are taken back: the simulation goes on as if it had not been made.
+///
+/// # Errors
+/// How far the run had come, if it had more.
+pub(crate) fn share<T>(events: u64, run: impl FnOnce() -> T) -> Result<T, Overrun> {
+    let (before, most) = (EVENTS.get(), MOST_EVENTS.get());
+    let share = before.saturating_add(events);
+    if share >= most {
+        return Ok(run());
+    }
+    MOST_EVENTS.set(share);
+    let outcome = run();
+    MOST_EVENTS.set(most);
+    if EXHAUSTED.get() != Some(Exhausted::Events(share)) {
+        return Ok(outcome);
+    }
+    let overrun = Overrun { exhausted: Exhausted::Events(events), ..overrun() };
+    EVENTS.set(before);
+    EXHAUSTED.set(None);
+    UNITS.set(UNITS_A_LOOK);
+    Err(overrun)
+}
+
 #[cold]
 fn exhaust(by: Exhausted) {
     EXHAUSTED.set(Some(EXHAUSTED.get().unwrap_or(by)));
@@ -364,6 +388,26 @@ mod tests {
         };
         let stopped = allowance.simulate(|| run(0, 50).and_then(|()| run(40, 50))).unwrap_err().to_string();
         assert!(stopped.contains("run 2, at about 40 events a cycle"), "{stopped}");
+    }
+
+    #[test]
+    fn a_run_beyond_its_share_of_the_events_costs_the_simulation_nothing() {
+        let run = |events: u64| {
+            within(|| {
+                (0..events).for_each(|_| count_event());
+                Ok::<_, Overrun>(events)
+            })
+        };
+        Allowance::new(Limit { events: 100, ..Limit::default() }).simulate(|| {
+            assert_eq!(run(60), Ok(60));
+            let broken_off = share(30, || run(31)).unwrap_err();
+            assert_eq!((broken_off.exhausted, broken_off.of_this_run), (Exhausted::Events(30), 31));
+            assert_eq!(share(30, || run(30)), Ok(Ok(30)));
+            // Ten are left, less than the share: the limit is that of the simulation.
+            let overrun = share(30, || run(11)).unwrap().unwrap_err();
+            assert_eq!(overrun.exhausted, Exhausted::Events(100));
+            assert!(run(0).is_err());
+        });
     }
 
     #[test]

@@ -68,7 +68,7 @@ pub use response::proof::Proof;
 pub use response::sample::{Sample, SampledParticle};
 pub use response::{Counts, CycleRates, Method, Observed, Response};
 pub use run::repeated::keeping_runs;
-pub use run::{event_driven, fundamental_matrix, is_linear};
+pub use run::{event_driven, event_driven_within, fundamental_matrix, is_linear};
 pub use system::spline::Spline;
 pub use system::{
     Contact, Drive, Event, EventKind, Face, HalfCycles, Harmonic, HybridSystem, Law, Particle, Stop, Tick,

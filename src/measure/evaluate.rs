@@ -20,6 +20,7 @@ use super::energy::Energies;
 use super::history::{History, sampling_error};
 use super::kept;
 use super::later::{Later, settled_later};
+use super::neighbour::{neighbour, repeated};
 use super::reading::Reading;
 use super::references::References;
 use super::shape::{self, Shape};
@@ -277,6 +278,7 @@ impl Case<'_> {
                 .collect(),
             proof: response.proof,
             chaotic,
+            unknown: None,
             members: 1,
             motion,
             trace: lists.clone(),
@@ -307,7 +309,53 @@ impl Case<'_> {
         if members < 2 {
             alike = Options { extremes: false, record_events: 0, cycle_rates: false, ..alike };
         }
-        let twin = event_driven(system, &alike)?;
+        // The same events decided in other windows; measures of the history are as exact as its samples.
+        let by_second_accuracy = |chaotic: bool| {
+            let other = Options { window_factor: 0.5, audit: false, settling: false, ..main.clone() };
+            let second = repeated(system, &other)?;
+            if second.as_ref().is_ok_and(unsettled) {
+                return Ok(None);
+            }
+            let again = match &second {
+                Ok(second) => case.read(second, reference, &plain.start, true)?.values,
+                Err(_) => vec![f64::NAN; values.len()],
+            };
+            let own = request.measures.iter().map(|measure| own_error(*measure, &response));
+            let pairs = values.iter().zip(again).zip(own);
+            // A number of other runs is read once, as exact as those settle.
+            let numerical = pairs.enumerate().map(|(place, ((a, b), own))| {
+                let differs = if settled == Some(place) { CLOSED_FORM * a.abs() } else { (a - b).abs() };
+                let least = (4.0 * f64::EPSILON * a.abs()).max(own);
+                // A number that is none differs by none.
+                if second.is_err() && differs.is_nan() { f64::NAN } else { differs.max(least) }
+            });
+            let mut evaluated = certain(numerical.collect(), chaotic);
+            if let Err(why) = &second {
+                evaluated.note_unknown("numerical uncertainty", why);
+            }
+            Ok::<_, EvaluateError>(Some(evaluated))
+        };
+        // The run alone, where one beside it has no result.
+        let alone = |chaotic: bool, why: &str| {
+            let evaluated = match request.rigour {
+                Rigour::Result => by_second_accuracy(chaotic)?,
+                Rigour::Variant | Rigour::Look | Rigour::Step => Some(certain(exact(), chaotic)),
+            };
+            Ok::<_, EvaluateError>(evaluated.map(|mut evaluated| {
+                let with_spread = request.measures.iter().zip(&elasticities);
+                for (one, (measure, known)) in evaluated.measured.iter_mut().zip(with_spread) {
+                    if members >= 2 && known.is_none() && !measure.is_of_own_run() {
+                        one.spread = f64::NAN;
+                    }
+                }
+                evaluated.note_unknown(if chaotic { "spread" } else { "sensitivity to initial conditions" }, why);
+                evaluated
+            }))
+        };
+        let twin = match neighbour(system, &alike, &response)? {
+            Ok(twin) => twin,
+            Err(why) => return alone(false, &why),
+        };
         if !twin.stays_beside && unsettled(&twin) {
             return Ok(None);
         }
@@ -316,21 +364,7 @@ impl Case<'_> {
             return Ok(Some(certain(exact(), false)));
         }
         if !chaotic || members < 2 {
-            // The same events decided in other windows; measures of the history are as exact as its samples.
-            let second =
-                event_driven(system, &Options { window_factor: 0.5, audit: false, settling: false, ..main.clone() })?;
-            if unsettled(&second) {
-                return Ok(None);
-            }
-            let again = case.read(&second, reference, &plain.start, true)?.values;
-            let own = request.measures.iter().map(|measure| own_error(*measure, &response));
-            let pairs = values.iter().zip(again).zip(own);
-            // A number of other runs is read once, as exact as those settle.
-            let numerical = pairs.enumerate().map(|(place, ((a, b), own))| {
-                let differs = if settled == Some(place) { CLOSED_FORM * a.abs() } else { (a - b).abs() };
-                differs.max(4.0 * f64::EPSILON * a.abs()).max(own)
-            });
-            return Ok(Some(certain(numerical.collect(), chaotic)));
+            return by_second_accuracy(chaotic);
         }
 
         let mut sums = vec![Welford::default(); request.measures.len()];
@@ -360,7 +394,10 @@ impl Case<'_> {
             made += 1;
             let step = f64::from(member / 2) * 2.0 / f64::from(members);
             let kick = ENSEMBLE_KICK * if member % 2 == 0 { step } else { -step };
-            let kicked = event_driven(system, &Options { kick, ..plain.clone() })?;
+            let kicked = match neighbour(system, &Options { kick, ..plain.clone() }, &response)? {
+                Ok(kicked) => kicked,
+                Err(why) => return alone(true, &why),
+            };
             if unsettled(&kicked) {
                 return Ok(None);
             }
@@ -380,7 +417,8 @@ impl Case<'_> {
             },
         );
         let measured = measured.collect();
-        Ok(Some(Evaluated { measured, proof: response.proof, chaotic, members: made, motion, trace: lists, end }))
+        let proof = response.proof;
+        Ok(Some(Evaluated { measured, proof, chaotic, unknown: None, members: made, motion, trace: lists, end }))
     }
 }
 
@@ -416,6 +454,7 @@ impl Case<'_> {
             measured: measured.collect::<Result<_, _>>()?,
             proof: Proof::linear(),
             chaotic: false,
+            unknown: None,
             members: 0,
             motion: None,
             trace: shape.map(|shape| shape.columns).unwrap_or_default(),

@@ -17,6 +17,7 @@ mod impact;
 mod kept;
 mod later;
 mod measures;
+mod neighbour;
 mod orbit;
 mod reading;
 mod references;
@@ -95,9 +96,9 @@ pub enum Rigour {
 pub struct Measured {
     /// The value; the ensemble mean where the motion is chaotic.
     pub value: f64,
-    /// Numerical uncertainty: from a second accuracy of the same run, or the standard error of the ensemble's mean.
+    /// Numerical uncertainty: from a second accuracy of the same run, or the standard error of the ensemble's mean; NaN where it is unknown.
     pub numerical: f64,
-    /// Standard deviation over the ensemble of perturbed starts; 0 where the motion is not chaotic.
+    /// Standard deviation over the ensemble of perturbed starts; 0 where the motion is not chaotic, NaN where it is unknown.
     pub spread: f64,
 }
 
@@ -108,8 +109,10 @@ pub struct Evaluated {
     pub measured: Vec<Measured>,
     /// What proves the run.
     pub proof: Proof,
-    /// True where a kicked twin of the run ended elsewhere.
+    /// True where a kicked twin of the run ended elsewhere; false also where that is `unknown`.
     pub chaotic: bool,
+    /// What runs beside this one were to say of it and did not, and why; `None` if they all did.
+    pub unknown: Option<String>,
     /// Runs averaged; 0 of a row that needs none.
     pub members: u32,
     /// The kind of motion, if asked for.

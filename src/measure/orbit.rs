@@ -64,6 +64,7 @@ pub fn measured_orbit(
         measured: measured.collect::<Result<_, _>>()?,
         proof: response.proof,
         chaotic: false,
+        unknown: None,
         members: 1,
         motion: Some(orbit.kind),
         trace: Vec::new(),

@@ -10,7 +10,7 @@ use super::columns::{Found, find, find_if_any, height, labels, number, parameter
 use super::selection::{Allowed, Selection, same};
 use super::text::{known, significant, symbol, with_unit};
 use crate::experiment::{Parameter, assumption_of};
-use crate::table::{BASELINE, Data, Table};
+use crate::table::{BASELINE, Data, Table, UNKNOWN};
 
 /// The solver that is meant where an entry names none.
 const DEFAULT_SOLVER: &str = "event_driven";
@@ -286,7 +286,11 @@ impl<'a> View<'a> {
                     return Err(broken(&format!("is {}", significant(value, 3))));
                 }
                 if !(has_error && own.is_finite() && spread.is_finite()) {
-                    return Err(broken("has no error of its own"));
+                    let unknown = rows.table.texts(UNKNOWN).map_or("", |reasons| reasons[row].as_str());
+                    return Err(match unknown {
+                        "" => broken("has no error of its own"),
+                        why => Absence::Broken(format!("the error of `{of}` is not known in row {}: {why}", row + 1)),
+                    });
                 }
                 Ok(Cell { value, run: own.max(spread / members.max(1.0).sqrt()), spread })
             })

@@ -1,10 +1,11 @@
-//! Rows whose numbers are to be doubted: balances that do not close, and ratios of nothing to nothing.
+//! Rows whose numbers are to be doubted: balances that do not close, ratios of nothing to nothing, and numbers whose spread or
+//! uncertainty is unknown.
 
 use std::collections::BTreeSet;
 
 use super::markdown::escaped;
 use super::verdicts::Judgement;
-use crate::table::{Table, UNDEFINED};
+use crate::table::{Table, UNDEFINED, UNKNOWN};
 use crate::text::number::significant;
 use crate::text::words::counted;
 
@@ -19,21 +20,28 @@ pub(super) fn section(table: &Table) -> String {
             worst(table, &unbalanced)
         );
     }
+    text += &listed("Undefined numbers", table, UNDEFINED);
+    text += &listed("Unknown", table, UNKNOWN);
+    text
+}
+
+/// What a column of reasons says, each reason once with its rows; nothing without such a column.
+fn listed(title: &str, table: &Table, column: &str) -> String {
     let mut reasons: Vec<(&str, usize)> = Vec::new();
-    for reason in table.texts(UNDEFINED).unwrap_or_default().iter().filter(|reason| !reason.is_empty()) {
+    for reason in table.texts(column).unwrap_or_default().iter().filter(|reason| !reason.is_empty()) {
         match reasons.iter_mut().find(|(known, _)| known == reason) {
             Some((_, count)) => *count += 1,
             None => reasons.push((reason, 1)),
         }
     }
-    if !reasons.is_empty() {
-        text += "**Undefined numbers**\n\n";
-        for (reason, count) in reasons {
-            text += &format!("- {}: {}\n", counted(count, "row", "rows"), escaped(reason));
-        }
-        text += "\n";
+    if reasons.is_empty() {
+        return String::new();
     }
-    text
+    let mut text = format!("**{title}**\n\n");
+    for (reason, count) in reasons {
+        text += &format!("- {}: {}\n", counted(count, "row", "rows"), escaped(reason));
+    }
+    text + "\n"
 }
 
 /// `the largest residual is 9e7, where rounding leaves 1e-9 at most`.
@@ -61,11 +69,13 @@ pub fn doubts(judgement: &Judgement, ids: &BTreeSet<&str>) -> String {
             let rows = counted(unbalanced.len(), "row does", "rows do");
             text += &format!("{id}: {rows} not balance and count for no entry: {}\n", worst(table, &unbalanced));
         }
-        let undefined = table.texts(UNDEFINED).unwrap_or_default();
-        let mut reasons = undefined.iter().filter(|reason| !reason.is_empty());
-        if let Some(first) = reasons.next() {
-            let rows = counted(1 + reasons.count(), "row has", "rows have");
-            text += &format!("{id}: {rows} undefined numbers; the first: {first}\n");
+        for (column, what) in [(UNDEFINED, "undefined numbers"), (UNKNOWN, "something unknown")] {
+            let cells = table.texts(column).unwrap_or_default();
+            let mut reasons = cells.iter().filter(|reason| !reason.is_empty());
+            if let Some(first) = reasons.next() {
+                let rows = counted(1 + reasons.count(), "row has", "rows have");
+                text += &format!("{id}: {rows} {what}; the first: {first}\n");
+            }
         }
     }
     text

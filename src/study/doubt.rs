@@ -2,7 +2,7 @@
 
 use crate::experiment::Experiment;
 use crate::measure::{Evaluated, Particles};
-use crate::table::{Column, Data, UNDEFINED};
+use crate::table::{Column, Data, UNDEFINED, UNKNOWN};
 
 pub(super) use crate::table::RESIDUAL_BOUND;
 
@@ -27,6 +27,15 @@ pub(super) fn undefined<'a>(
     };
     let of_row =
         |row: Option<&Evaluated>| row.map_or_else(String::new, |row| row.undefined(&experiment.measures, particles));
-    let texts: Vec<String> = rows.map(of_row).collect();
-    texts.iter().any(|text| !text.is_empty()).then(|| Column::new(UNDEFINED, Data::Text(texts)))
+    texts(UNDEFINED, rows.map(of_row).collect())
+}
+
+/// What is unknown of a row, and why; empty in other rows.
+pub(super) fn unknown<'a>(rows: impl Iterator<Item = Option<&'a Evaluated>>) -> Option<Column> {
+    let of_row = |row: Option<&Evaluated>| row.and_then(|row| row.unknown.clone()).unwrap_or_default();
+    texts(UNKNOWN, rows.map(of_row).collect())
+}
+
+fn texts(name: &str, texts: Vec<String>) -> Option<Column> {
+    texts.iter().any(|text| !text.is_empty()).then(|| Column::new(name, Data::Text(texts)))
 }

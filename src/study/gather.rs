@@ -133,6 +133,19 @@ fn join(tables: &[Table], rows: &[(usize, usize)]) -> Table {
     for column in first.columns.iter().filter(|column| !is_list(column)) {
         table.columns.push(joined(column, tables, rows));
     }
+    // Columns of what is to be doubted are there only where some row gives cause; each stands behind the same one in every table.
+    for other in &tables[1..] {
+        let mut place = 0;
+        for column in other.columns.iter().filter(|column| !is_list(column)) {
+            match table.columns.iter().position(|known| known.name == column.name) {
+                Some(known) => place = known + 1,
+                None => {
+                    table.columns.insert(place, joined(column, tables, rows));
+                    place += 1;
+                }
+            }
+        }
+    }
     let fingerprint = |&(of, at): &(usize, usize)| tables[of].fingerprints.get(at).copied();
     table.fingerprints = rows.iter().filter_map(fingerprint).collect();
     // A table lists only the time histories that its rows have; the first row that has one fixes its place.

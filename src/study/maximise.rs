@@ -105,7 +105,7 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
         let first = tried.iter().position(|one| one.value > 0.0).ok_or_else(|| missed(false))?;
         let before = first.checked_sub(1).map(|last| tried[last].at).ok_or_else(|| missed(true))?;
         let mut below = before;
-        let mut is_chaotic = tried[first - 1..=first].iter().any(|one| one.evaluated.chaotic);
+        let mut is_chaotic = tried[first - 1..=first].iter().any(|one| one.evaluated.may_be_chaotic());
         let mut above = tried.swap_remove(first);
         for _ in 0..self.maximise.bisections() {
             let at = between(below, above.at);
@@ -113,7 +113,7 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
                 break;
             }
             let tried = self.one(at)?;
-            is_chaotic |= tried.evaluated.chaotic;
+            is_chaotic |= tried.evaluated.may_be_chaotic();
             if tried.value > 0.0 {
                 above = tried;
             } else {

@@ -88,6 +88,7 @@ pub(super) fn mean(wanted: &[Measure], measures: &[Measure], ratio: MeanRatio, e
             ties: each.iter().map(|one| one.proof.ties).sum(),
         },
         chaotic: each.iter().any(|one| one.chaotic),
+        unknown: each.iter().find_map(|one| one.unknown.clone()),
         members: each.iter().map(|one| one.members).max().unwrap_or(1),
         motion: None,
         trace: Vec::new(),

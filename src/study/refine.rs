@@ -68,7 +68,7 @@ fn refine(
         let known = look(&case);
         let parameter = number_of(&case, rule.over);
         let at = if rule.spacing == AxisScale::Log { libm::log10(parameter) } else { parameter };
-        let chaotic = known.as_ref().is_ok_and(|row| row.evaluated.chaotic);
+        let chaotic = known.as_ref().is_ok_and(|row| row.evaluated.may_be_chaotic());
         Seen { at, values: values(experiment, rule, &known), chaotic, point: Point { case, known: Some(known) } }
     };
     let mut first: Vec<Case> = curve.cases.iter().map(|&case| experiment.cases[case].clone()).collect();

@@ -88,6 +88,7 @@ pub(super) fn table(
         texts(&|row| outcomes[row].as_ref().err().map(ToString::to_string).unwrap_or_default()),
     ));
     columns.extend(doubt::undefined(experiment, evaluated.iter().copied()));
+    columns.extend(doubt::unknown(evaluated.iter().copied()));
     columns.extend(histories(experiment, jobs, outcomes));
     Table { columns, metadata, fingerprints }
 }

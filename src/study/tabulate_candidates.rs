@@ -123,6 +123,7 @@ pub(super) fn table(
     columns.extend(tabulate::proof(&evaluated, &audited));
     columns.extend(doubt::residual_bounds(&audited));
     columns.push(texts("failure", &|it| it.failure()));
+    columns.extend(doubt::unknown(evaluated.iter().copied()));
     columns.extend(lists(optimise, candidates));
     Table { columns, metadata, ..Table::default() }
 }

@@ -6,7 +6,7 @@ use super::tabulate::Row;
 use crate::dynamics::Proof;
 use crate::experiment::Experiment;
 use crate::measure::{Evaluated, Measured, TraceColumn};
-use crate::table::{Column, Data, Table};
+use crate::table::{Column, Data, Table, UNKNOWN};
 use crate::text::words;
 
 /// The columns of a table that the numbers of an experiment's rows stand in.
@@ -27,6 +27,8 @@ pub(super) struct Cells<'a> {
     chaotic: &'a [i64],
     members: &'a [i64],
     failure: &'a [String],
+    /// There where something is unknown of some row.
+    unknown: Option<&'a [String]>,
     lists: Vec<(&'a Column, &'a [Vec<f64>])>,
 }
 
@@ -78,6 +80,7 @@ impl<'a> Cells<'a> {
             chaotic: counts("chaotic")?,
             members: counts("members")?,
             failure: table.texts("failure")?,
+            unknown: table.texts(UNKNOWN),
             lists: lists.collect(),
         })
     }
@@ -106,6 +109,7 @@ impl<'a> Cells<'a> {
             measured: measured.collect(),
             proof,
             chaotic: self.chaotic[row] != 0,
+            unknown: self.unknown.map(|cells| cells[row].clone()).filter(|cell| !cell.is_empty()),
             members: u32::try_from(self.members[row]).ok()?,
             // A row of a fixed step has no name.
             motion: match self.motion.map(|cells| &cells[row]).filter(|cell| !cell.is_empty()) {

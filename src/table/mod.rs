@@ -25,6 +25,9 @@ pub const RESIDUAL_BOUND: &str = "residual_bound";
 /// The column that says which numbers of a row are undefined, and why; there only if some are.
 pub const UNDEFINED: &str = "undefined";
 
+/// The column that says what runs beside a row's own were to say of it and did not, and why; there only if some did not.
+pub const UNKNOWN: &str = "unknown";
+
 /// A named column with its unit (empty for dimensionless and text).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {

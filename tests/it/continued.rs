@@ -69,6 +69,7 @@ impl Evaluate for Relay {
             measured: it.measures.iter().map(|_| Measured { value: state, numerical: 0.0, spread: 0.0 }).collect(),
             proof: Proof::default(),
             chaotic: false,
+            unknown: None,
             members: 1,
             motion: None,
             trace: it

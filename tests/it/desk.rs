@@ -254,6 +254,7 @@ impl Evaluate for MadeUp {
             measured: it.measures.iter().map(|_| Measured { value, numerical: 1e-12, spread: 0.0 }).collect(),
             proof: Proof { events: 490, smallest_margin: 1e-3, ..Proof::default() },
             chaotic: false,
+            unknown: None,
             members: 1,
             motion: None,
             trace: it.trace.map(|_| vec![TraceColumn::new("time", "s", vec![0.0, 1.0])]).unwrap_or_default(),

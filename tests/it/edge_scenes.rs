@@ -12,7 +12,7 @@ use shotdamp::experiment::Assumptions;
 use shotdamp::experiment::{load_assumptions, parse_experiment};
 use shotdamp::measure::Evaluated;
 use shotdamp::study::{Engine, Evaluate, Finished, IgnoreEvents, RowFailure, Simulation, Task, Variant, run};
-use shotdamp::table::UNDEFINED;
+use shotdamp::table::{UNDEFINED, UNKNOWN};
 
 use crate::mutations::memory;
 
@@ -110,8 +110,8 @@ fn answer(text: &str, assumptions: &Assumptions) -> Answer {
         failures.first
     } else if table.is_unbalanced(0) {
         "unbalanced".into()
-    } else if let Some(undefined) = table.texts(UNDEFINED) {
-        undefined[0].clone()
+    } else if let Some(reasons) = table.texts(UNDEFINED).or_else(|| table.texts(UNKNOWN)) {
+        reasons[0].clone()
     } else {
         let measures = ["velocity_ratio", "displacement_ratio", "rms_velocity"];
         let values: Vec<f64> = measures.iter().filter_map(|name| Some(table.floats(name)?[0])).collect();

@@ -79,6 +79,7 @@ impl Evaluate for Bowl {
                 .collect(),
             proof: Proof::default(),
             chaotic: self.error > 0.0,
+            unknown: None,
             members: 8,
             motion: None,
             trace: Vec::new(),

@@ -38,6 +38,7 @@ impl Evaluate for Curve {
             measured: vec![Measured { value, numerical: 0.0, spread }],
             proof: Proof::default(),
             chaotic,
+            unknown: None,
             members: 1,
             motion: None,
             trace: Vec::new(),

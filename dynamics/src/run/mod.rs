@@ -2,7 +2,7 @@
 
 pub(crate) mod repeated;
 
-use crate::budget;
+use crate::budget::{self, Overrun};
 use crate::error::EngineError;
 use crate::linear;
 use crate::march;
@@ -18,6 +18,22 @@ use crate::system::HybridSystem;
 /// [`EngineError`] with the reason.
 pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
     repeated::once(system, options, || simulated(system, options))
+}
+
+/// The same of a run that may have so many events and is not needed: if it has more, the simulation goes on without it, and the inner error
+/// says how far it had come. The limit of the simulation itself is an error as ever.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn event_driven_within(
+    events: u64,
+    system: &HybridSystem,
+    options: &Options,
+) -> Result<Result<Response, Overrun>, EngineError> {
+    match budget::share(events, || event_driven(system, options)) {
+        Ok(outcome) => outcome.map(Ok),
+        Err(overrun) => Ok(Err(overrun)),
+    }
 }
 
 fn simulated(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
