@@ -11,7 +11,7 @@ use super::exit::Exit;
 use super::output::print;
 use super::select::{matches, no_match, open};
 use crate::atomic::place_of;
-use crate::reference::{Judged, NOT_RUN, Verdict};
+use crate::reference::{NoTable, WhyNoTable};
 use crate::report::{self, Detail, Movement, Standing, VERDICTS, judge_tables};
 use crate::study::{Item, Layout, Reason, State, Study};
 use crate::table::{Table, parquet};
@@ -39,10 +39,11 @@ pub(super) fn diff(layout: &Layout, args: &DiffArgs) -> Result<Exit, CliError> {
         Some(study) => Ok(study),
         None => open(layout).map(|study| opened.get_or_init(|| study)),
     };
+    let own = [&a, &b].map(|path| place_of(&folder_of_tables(path)) == place_of(&layout.results()));
     let mut stale = Vec::new();
-    for (path, side) in [(&a, &before), (&b, &now)] {
+    for (is_own, side) in own.into_iter().zip([&before, &now]) {
         if let Side::Tables(tables) = side
-            && place_of(&folder_of_tables(path)) == place_of(&layout.results())
+            && is_own
         {
             stale.extend(stale_among(study()?, |id| tables.contains_key(id) && is_asked_for(id)));
         }
@@ -54,7 +55,8 @@ pub(super) fn diff(layout: &Layout, args: &DiffArgs) -> Result<Exit, CliError> {
             of_tables(&a, &b)
         }
         (a, b) => {
-            let (mut a, mut b) = (a.verdicts(study, &mut not_run)?, b.verdicts(study, &mut not_run)?);
+            let ((mut a, lacking_a), (mut b, lacking_b)) = (a.verdicts(study, own[0])?, b.verdicts(study, own[1])?);
+            not_run = [lacking_a, lacking_b].concat();
             // Only now: their entries may read tables of other experiments.
             for side in [&mut a, &mut b] {
                 side.retain(|one| !not_run.contains(&one.id) && is_asked_for(experiment_of(&one.id)));
@@ -125,21 +127,33 @@ impl Side {
         }
     }
 
-    /// Judged by the reference of this study, if it has not been; entries that need a table which is not there are put with those that were
-    /// `not_run`.
+    /// Judged by the reference of this study, if it has not been, and the entries that read a table which has not been run.
+    ///
+    /// Entries of experiments that it does not have are left out: those of which the study has none, and in a folder that is not the study's
+    /// `own` those of which there is no table, as nothing says that one is to come.
     fn verdicts<'s>(
         self,
         study: impl Fn() -> Result<&'s Study, CliError>,
-        not_run: &mut Vec<String>,
-    ) -> Result<Vec<Standing>, CliError> {
-        let tables = match self {
-            Self::Verdicts(verdicts) => return Ok(verdicts),
-            Self::Tables(tables) => tables,
+        own: bool,
+    ) -> Result<(Vec<Standing>, Vec<String>), CliError> {
+        let (mut standings, is_judged) = match self {
+            Self::Verdicts(verdicts) => (verdicts, true),
+            Self::Tables(tables) => {
+                (judge_tables(study()?, &tables).iter().map(report::standing).collect::<Vec<_>>(), false)
+            }
         };
-        let judged = judge_tables(study()?, &tables);
-        let lacks_table = |one: &&Judged| one.verdict == Verdict::Missing && one.found.contains(NOT_RUN);
-        not_run.extend(judged.iter().filter(lacks_table).map(|one| one.id.clone()));
-        Ok(judged.iter().map(report::standing).collect())
+        let has_experiment = |one: &Standing| match &one.no_table {
+            Some(NoTable { experiment, why }) if experiment == experiment_of(&one.id) => match why {
+                WhyNoTable::NoExperiment => false,
+                WhyNoTable::NotRun => own || is_judged,
+                WhyNoTable::Stale | WhyNoTable::Failed => true,
+            },
+            _ => true,
+        };
+        standings.retain(has_experiment);
+        let lacks_table = |one: &&Standing| one.no_table.as_ref().is_some_and(|table| table.why == WhyNoTable::NotRun);
+        let not_run = standings.iter().filter(|_| !is_judged).filter(lacks_table).map(|one| one.id.clone()).collect();
+        Ok((standings, not_run))
     }
 }
 

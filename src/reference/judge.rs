@@ -18,7 +18,7 @@ use super::printed::{Printed, PrintedUnit};
 use super::resonance::PrintedPeak;
 use super::tally::{Decision, Outcome};
 use super::text::measured;
-use super::verdict::{Comparison, Judged, Kind, Moved, Part, Role, Verdict};
+use super::verdict::{Comparison, Judged, Kind, Moved, NoTable, Part, Role, Verdict};
 use super::view::{Absence, Reads, Tables, View};
 use crate::experiment::assumption_of;
 use crate::table::BASELINE;
@@ -106,6 +106,7 @@ pub(crate) fn judge_entry(
         verdict: judgement.verdict,
         expected: entry.expected,
         found: judgement.found + &ends,
+        no_table: judgement.no_table,
         comparison: judgement.comparison,
         printed_unit: judgement.printed_unit,
         parts: judgement.parts,
@@ -132,6 +133,7 @@ fn in_words(outcome: Outcome) -> &'static str {
 struct Judgement {
     verdict: Verdict,
     found: String,
+    no_table: Option<NoTable>,
     comparison: Option<Comparison>,
     printed_unit: PrintedUnit,
     parts: Vec<Part>,
@@ -146,6 +148,7 @@ impl Judgement {
         Self {
             verdict,
             found: String::new(),
+            no_table: None,
             comparison: None,
             printed_unit: PrintedUnit::default(),
             parts: Vec::new(),
@@ -157,7 +160,8 @@ impl Judgement {
     }
 
     fn missing(absence: &Absence) -> Self {
-        Self { found: absence.reason().to_string(), ..Self::of(Verdict::Missing) }
+        let (found, no_table) = (absence.reason().to_string(), absence.no_table().cloned());
+        Self { found, no_table, ..Self::of(Verdict::Missing) }
     }
 }
 
@@ -179,6 +183,7 @@ fn numbers(view: &View<'_>, peak: &PrintedPeak, by_hand: Option<&Tolerance>, fit
     let found: Vec<String> = judged.iter().map(|(name, judgement)| format!("{name} {}", judgement.found)).collect();
     let blocked_by: BTreeSet<String> =
         judged.iter().flat_map(|(_, judgement)| judgement.blocked_by.iter().cloned()).collect();
+    let no_table = judged.iter().find_map(|(_, judgement)| judgement.no_table.clone());
     let parts = judged.into_iter().map(|(name, Judgement { verdict, found, comparison, printed_unit, .. })| Part {
         name: name.into(),
         verdict,
@@ -189,6 +194,7 @@ fn numbers(view: &View<'_>, peak: &PrintedPeak, by_hand: Option<&Tolerance>, fit
     let parts = parts.collect();
     Judgement {
         found: found.join("; "),
+        no_table,
         parts,
         blocked_by: blocked_by.into_iter().collect(),
         robust,
@@ -223,6 +229,9 @@ fn moved<'a, T>(
         match ask(&View { variant, ..view.clone() }) {
             Ok(answer) => answers.push((variant, answer)),
             Err(Absence::NoRow(_)) => {}
+            Err(Absence::NoTable { table, reason }) => {
+                return Err(Absence::NoTable { table, reason: format!("with {variant}: {reason}") });
+            }
             Err(Absence::Broken(reason)) => return Err(Absence::Broken(format!("with {variant}: {reason}"))),
             Err(Absence::Nowhere(reason)) => return Err(Absence::Nowhere(format!("with {variant}: {reason}"))),
         }

@@ -56,6 +56,5 @@ pub use resonance::{Feature, PrintedPeak, Which};
 pub use selection::{Allowed, Selection};
 pub use self_test::{Flaw, SelfTestFailure, self_test};
 pub(crate) use text::symbol;
-pub use verdict::{Comparison, Judged, Kind, Moved, Part, Role, Verdict};
-pub(crate) use view::NOT_RUN;
+pub use verdict::{Comparison, Judged, Kind, Moved, NoTable, Part, Role, Verdict, WhyNoTable};
 pub use view::{TableState, Tables};

@@ -117,6 +117,29 @@ pub struct Part {
     pub printed_unit: PrintedUnit,
 }
 
+/// A table that an entry reads and that is not there.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct NoTable {
+    /// The experiment whose table it would be.
+    pub experiment: String,
+    /// Why it is not there.
+    pub why: WhyNoTable,
+}
+
+/// Why there is no table of an experiment, or none that counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WhyNoTable {
+    /// The experiment has not been run.
+    NotRun,
+    /// It was run with other inputs.
+    Stale,
+    /// It failed as a whole.
+    Failed,
+    /// There is no such experiment.
+    NoExperiment,
+}
+
 /// An entry with its verdict, ready for a report: plain data, no tables needed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Judged {
@@ -137,6 +160,9 @@ pub struct Judged {
     pub expected: Verdict,
     /// What came out, in one line: `1.56 ± 0.12, 2.9 % above 1.516`, `true: steps back by at most 0.2 % of the range`.
     pub found: String,
+    /// The first table that it reads and that is not there; `None` if all are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_table: Option<NoTable>,
     /// For values.
     pub comparison: Option<Comparison>,
     /// The unit in which a value is published.

@@ -9,6 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::columns::{Found, find, find_if_any, height, labels, number, parameter};
 use super::selection::{Allowed, Selection, same};
 use super::text::{known, significant, symbol, with_unit};
+use super::verdict::{NoTable, WhyNoTable};
 use crate::experiment::{Parameter, assumption_of};
 use crate::table::{BASELINE, Data, Table, UNKNOWN};
 
@@ -33,15 +34,14 @@ pub enum TableState<'a> {
 /// Tables by experiment; one that is not listed has not been run.
 pub type Tables<'a> = BTreeMap<String, TableState<'a>>;
 
-/// What is said of an experiment that has no table.
-pub(crate) const NOT_RUN: &str = "has not been run";
-
 /// Why there is no number.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Absence {
     /// No row is meant by the conditions.
     NoRow(String),
-    /// The rows are there, what they should hold is not: no table, no column, NaN, failed.
+    /// There is no table, or none that counts.
+    NoTable { table: NoTable, reason: String },
+    /// The rows are there, what they should hold is not: no column, NaN, failed.
     Broken(String),
     /// All is there, but what the entry speaks of does not happen: no crossing, no parting.
     Nowhere(String),
@@ -50,7 +50,15 @@ pub(crate) enum Absence {
 impl Absence {
     pub(crate) fn reason(&self) -> &str {
         match self {
-            Self::NoRow(reason) | Self::Broken(reason) | Self::Nowhere(reason) => reason,
+            Self::NoTable { reason, .. } | Self::NoRow(reason) | Self::Broken(reason) | Self::Nowhere(reason) => reason,
+        }
+    }
+
+    /// The table that is not there.
+    pub(crate) fn no_table(&self) -> Option<&NoTable> {
+        match self {
+            Self::NoTable { table, .. } => Some(table),
+            Self::NoRow(_) | Self::Broken(_) | Self::Nowhere(_) => None,
         }
     }
 }
@@ -425,15 +433,17 @@ impl<'a> View<'a> {
     }
 
     fn table(&self, id: &str) -> Result<&'a Table, Absence> {
-        match self.tables.get(id) {
-            Some(TableState::Present(table)) => Ok(table),
-            Some(TableState::Stale) => Err(Absence::Broken(format!("the table of `{id}` is stale: run it again"))),
-            Some(TableState::Failed(reason)) => Err(Absence::Broken(format!("`{id}` failed: {reason}"))),
-            Some(TableState::NotRun) | None => Err(Absence::Broken(format!("`{id}` {NOT_RUN}"))),
-            Some(TableState::NoExperiment) => {
-                Err(Absence::Broken(format!("there is no experiment `{id}`: its file was renamed or is not there")))
-            }
-        }
+        let (why, reason) = match self.tables.get(id) {
+            Some(TableState::Present(table)) => return Ok(table),
+            Some(TableState::Stale) => (WhyNoTable::Stale, format!("the table of `{id}` is stale: run it again")),
+            Some(TableState::Failed(reason)) => (WhyNoTable::Failed, format!("`{id}` failed: {reason}")),
+            Some(TableState::NotRun) | None => (WhyNoTable::NotRun, format!("`{id}` has not been run")),
+            Some(TableState::NoExperiment) => (
+                WhyNoTable::NoExperiment,
+                format!("there is no experiment `{id}`: its file was renamed or is not there"),
+            ),
+        };
+        Err(Absence::NoTable { table: NoTable { experiment: id.to_owned(), why }, reason })
     }
 
     /// Notes that what the entry says of a curve is of this point.

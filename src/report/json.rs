@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::finding::{self, CheckView};
-use crate::reference::{Comparison, Judged};
+use crate::reference::{Comparison, Judged, NoTable};
 
 /// Raised when a key changes its meaning.
 const FORMAT: u32 = 1;
@@ -83,6 +83,8 @@ pub struct Standing {
     pub verdict: String,
     /// What came out, in words.
     pub found: String,
+    /// The table that it reads and that is not there.
+    pub no_table: Option<NoTable>,
     /// Its numbers by the names of its parts.
     pub numbers: BTreeMap<String, Number>,
 }
@@ -142,6 +144,7 @@ struct WrittenEntry {
     id: String,
     verdict: String,
     found: String,
+    no_table: Option<NoTable>,
     comparison: Option<WrittenNumber>,
     parts: Vec<WrittenPart>,
 }
@@ -167,6 +170,6 @@ impl WrittenEntry {
         let own = self.comparison.iter().map(|written| (String::new(), number(written)));
         let parts = self.parts.iter().filter_map(|part| Some((part.name.clone(), number(part.comparison.as_ref()?))));
         let numbers = own.chain(parts).collect();
-        Standing { id: self.id, verdict: self.verdict, found: self.found, numbers }
+        Standing { id: self.id, verdict: self.verdict, found: self.found, no_table: self.no_table, numbers }
     }
 }

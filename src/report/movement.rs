@@ -141,6 +141,7 @@ pub fn standing(judged: &Judged) -> Standing {
         id: judged.id.clone(),
         verdict: words::of_key(&judged.verdict),
         found: judged.found.clone(),
+        no_table: judged.no_table.clone(),
         numbers: numbers.collect(),
     }
 }

@@ -68,7 +68,8 @@ pub fn judge_all(study: &Study) -> Judgement {
 /// The verdicts that these tables give, whatever they were computed from.
 #[must_use]
 pub fn judge_tables(study: &Study, tables: &BTreeMap<String, Table>) -> Vec<Judged> {
-    let states: Tables<'_> = tables.iter().map(|(id, table)| (id.clone(), TableState::Present(table))).collect();
+    let present = tables.iter().map(|(id, table)| (id.clone(), TableState::Present(table)));
+    let states: Tables<'_> = orphans(study).map(|id| (id.clone(), TableState::NoExperiment)).chain(present).collect();
     let fitted = study.fitted();
     study.references.values().flat_map(|file| judged(study, file, &states, &fitted)).collect()
 }
@@ -117,11 +118,14 @@ fn on_disk(study: &Study) -> BTreeMap<String, OnDisk> {
         let table = parquet::read(&study.layout.path(&table_name(&known.heading.id)));
         Some((id, table.map_or_else(|error| OnDisk::Failed(error.to_string()), OnDisk::Present)))
     });
-    // An experiment that cannot be read is there all the same.
-    let ids = study.texts.ids();
-    let orphans = study.references.keys().filter(|id| !ids.contains(id.as_str()));
-    let orphans = orphans.map(|id| (id.clone(), OnDisk::NoExperiment));
+    let orphans = orphans(study).map(|id| (id.clone(), OnDisk::NoExperiment));
     states.into_iter().chain(known).chain(orphans).collect()
+}
+
+/// What entries speak of and no experiment is; one that cannot be read is there all the same.
+fn orphans(study: &Study) -> impl Iterator<Item = &String> {
+    let ids = study.texts.ids();
+    study.references.keys().filter(move |id| !ids.contains(id.as_str()))
 }
 
 fn tables(states: &BTreeMap<String, OnDisk>) -> Tables<'_> {

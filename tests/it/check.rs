@@ -21,6 +21,7 @@ fn judged(id: &str, verdict: Verdict, expected: Verdict) -> Judged {
         verdict,
         expected,
         found: "1.56, 100 % of it: a, b".into(),
+        no_table: None,
         comparison: None,
         parts: Vec::new(),
         fit: None,

@@ -137,3 +137,33 @@ fn after_running_one_experiment_the_others_are_no_differences() {
     let typo = shotdamp(&desk, &["diff", "--only", "ch3-gab"]);
     assert!(typo.code == 2 && typo.err.contains("no experiment matches `ch3-gab`"), "{}", typo.err);
 }
+
+/// The entry of an experiment that the study does not have any more is no comparison that is still to be made.
+#[test]
+fn the_entry_of_an_experiment_that_was_renamed_or_dropped_is_only_in_the_run_that_had_it() {
+    let desk = simulated();
+    assert_eq!(shotdamp(&desk, &[]).code, 0);
+    let path = |name: &str| desk.layout.path(name);
+    fs::rename(path("reports"), path("before")).unwrap();
+    // Its reference is still there.
+    fs::remove_file(path("experiments/ch3/ch3-stop.yaml")).unwrap();
+    fs::remove_file(path("results/ch3-stop.parquet")).unwrap();
+    let before = path("before").display().to_string();
+    let dropped = shotdamp(&desk, &["diff", &before]);
+    assert_eq!(dropped.code, 1, "{}{}", dropped.out, dropped.err);
+    assert!(dropped.out.contains("only in the first: 1\n    ch3-stop/at-two\n"), "{}", dropped.out);
+    assert!(!dropped.out.contains("not compared"), "{}", dropped.out);
+}
+
+/// A folder of tables that is not the study's own has no plan: what is not there is not still to be run.
+#[test]
+fn an_entry_whose_table_another_folder_lacks_is_only_in_the_reports() {
+    let desk = with_a_run_before();
+    assert_eq!(shotdamp(&desk, &[]).code, 0);
+    let path = |name: &str| desk.layout.path(name).display().to_string();
+    fs::rename(desk.layout.path("before/ch3-stop.parquet"), desk.layout.path("before/ch3-halt.parquet")).unwrap();
+    let said = shotdamp(&desk, &["diff", &path("before"), &path("reports")]);
+    assert_eq!(said.code, 1, "{}{}", said.out, said.err);
+    assert!(said.out.contains("only in the second: 1\n    ch3-stop/at-two\n"), "{}", said.out);
+    assert!(!said.out.contains("not compared"), "{}", said.out);
+}

@@ -37,6 +37,7 @@ fn entry(id: &str, verdict: Verdict) -> Judged {
         verdict,
         expected: verdict,
         found: "holds: 3.376 at f′ = 2.63 in both".into(),
+        no_table: None,
         comparison: None,
         parts: Vec::new(),
         fit: None,
