@@ -178,7 +178,7 @@ impl SceneReader<'_> {
         let masses =
             [("mass_ratio", "m′: mass of the damper over that of the structure"), ("mass", "Mass of the damper")];
         let mass = keys.exactly_one(&masses, |key, at| match key {
-            "mass" if at.holds(Value::is_swept) => by_ratio(at, "mass", Parameter::MassRatio),
+            "mass" if self.is_swept(at, Parameter::Mass) => Some(MassRecipe::Mass(Given::Stated(PLACEHOLDER))),
             "mass" => self.quantity(at, Dimension::Mass).map(MassRecipe::Mass),
             _ => self.sweepable(at, Parameter::MassRatio).map(MassRecipe::Ratio),
         });
@@ -501,13 +501,6 @@ fn kind_named(structure: At<'_>) -> Option<&'static Kind> {
         At::Node(Node { value: Value::Mapping(entries), .. }, _) => Kind::named(&entries.first()?.key),
         _ => None,
     }
-}
-
-/// A quantity that a sweep varies by its dimensionless parameter alone.
-fn by_ratio<T>(at: At<'_>, key: &str, parameter: Parameter) -> Option<T> {
-    let ratio = word_of(parameter);
-    let help = format!("write `{}` here, and the values of `{ratio}` in `sweep`", parameter.mark());
-    at.report(format!("`{key}` is not swept, `{ratio}` is"), Some(help))
 }
 
 /// The assumption that `{assumed: NAME}` names; `None`: it does not say so, `Some(None)`: it names none that fits.

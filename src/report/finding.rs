@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use crate::reference::{Comparison, Fit, Judged, PrintedUnit, Verdict};
+use crate::reference::{Comparison, Fit, Judged, NoTable, PrintedUnit, Verdict, WhyNoTable};
 use crate::text::number::{compact, signed, significant};
 
 use super::comparison::plus_minus;
@@ -85,9 +85,14 @@ pub(super) fn lines(one: &Judged) -> Vec<(&'static str, String)> {
     lines
 }
 
-/// The command that computes the entry's experiment anew, and nothing else.
+/// The command that computes the entry's experiment anew, and nothing else; where another table is not there, that one's. Empty where
+/// there is no experiment to be run.
 pub(super) fn rerun(one: &Judged) -> String {
-    format!("shotdamp run --force {}", one.experiment)
+    match &one.no_table {
+        Some(NoTable { why: WhyNoTable::NoExperiment, .. }) => String::new(),
+        Some(NoTable { experiment, .. }) => format!("shotdamp run --force {experiment}"),
+        None => format!("shotdamp run --force {}", one.experiment),
+    }
 }
 
 fn distance(name: &str, comparison: &Comparison, unit: &PrintedUnit) -> String {

@@ -10,7 +10,7 @@ use crate::dynamics::{MotionKind, Until};
 use crate::experiment::{Experiment, Parameter, RowSource};
 use crate::measure::{Measure, Settings};
 use crate::table::{BASELINE, Table};
-use crate::text::number::compact;
+use crate::text::number::quantity;
 use crate::text::words::of_key;
 
 /// What a thousandth changes is read off a figure by nobody, and printed by the study with three digits.
@@ -151,7 +151,7 @@ pub(super) fn described(
         let column = of_key(parameter);
         let name = if parameter.symbol().is_empty() { column.replace('_', " ") } else { parameter.symbol().into() };
         let value = match (table.floats(&column), table.texts(&column)) {
-            (Some(numbers), _) if !numbers[row].is_nan() => compact(numbers[row], 4),
+            (Some(numbers), _) if !numbers[row].is_nan() => quantity(numbers[row], parameter.unit(), 4),
             (None, Some(words)) if !words[row].is_empty() => words[row].clone(),
             _ => return None,
         };

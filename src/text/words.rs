@@ -24,6 +24,7 @@ pub fn of_column(name: &str) -> String {
         "base_amplitude_ratio" => "dimensionless base amplitude",
         "gap_ratio" => "dimensionless gap clearance",
         "gap" => "gap clearance",
+        "mass" => "mass of the damper",
         "damping_ratio" => "structural damping ratio",
         "contact_damping_ratio" => "damping ratio of floor and ceiling",
         "stop" => "limit stop",

@@ -412,6 +412,7 @@ fn a_name_that_means_something_else_is_told_from_one_that_is_unknown() {
     fails(&["show", "ch3-gap"], &["no experiment matches `ch3-gap`"]);
     let said = shotdamp(&desk, &["check"]);
     assert!(said.out.contains("there is no experiment `ch3-gap`"), "{}", said.out);
+    assert!(!said.out.contains("run --force ch3-gap"), "no run makes up for it: {}", said.out);
 }
 
 #[test]

@@ -3,6 +3,8 @@
 use shotdamp::experiment::{Assumptions, Experiment, GapRecipe, Problems, parse_experiment};
 use shotdamp::scene::{Damper, Scene, Surface};
 
+use crate::desk::{Desk, THREE_GAPS, shotdamp};
+
 const MASS: &str = "{single_mass: {mass: 2 kg, stiffness: 5000 N/m, damping_ratio: 0.02}}";
 const BEAM: &str = "{clamped_beam: {length: 1 m, width: 30 mm, thickness: 5 mm, youngs_modulus: 200 GPa, density: 7800 kg/m^3, rayleigh: 5e-5, modes: 4}}";
 const RIGID: &str = "floor: {rigid: {restitution: 0.6}}";
@@ -132,18 +134,39 @@ fn a_gap_is_swept_in_millimetres() {
 }
 
 #[test]
-fn a_key_that_no_sweep_varies_says_what_to_sweep_instead() {
-    for (damper, words, help) in [
-        (format!("mass: swept, gap: 5 mm, {RIGID}"), "`mass` is not swept, `mass_ratio` is", "`mass_ratio: swept`"),
-        (
-            "mass: 100 g, gap: 5 mm, floor: {rigid: {restitution: swept}}".to_owned(),
-            "no sweep varies this key",
-            "`contact_damping_ratio`",
-        ),
-    ] {
-        let said = refused(&text(MASS, &[&damper], HARMONIC, ""));
-        assert!(said.contains(words) && said.contains(help), "{said}");
+fn a_page_leads_with_a_swept_gap_and_a_swept_mass_in_their_units() {
+    let both = THREE_GAPS.replace("gap_ratio: swept", "gap: swept").replace("mass_ratio: 0.05", "mass: swept");
+    let text = both.replace("gap_ratio: [10, 50, 90]", "gap: [5 mm, 10 mm], mass: [50 g]");
+    let desk = Desk::of_one("experiments/ch3/ch3-long.yaml", &text);
+    let said = shotdamp(&desk, &["run"]);
+    let page = String::from_utf8(desk.bytes("reports/ch3/ch3-long.md")).unwrap();
+    let lead = page
+        .lines()
+        .find(|line| line.starts_with("**In short.** RMS velocity "))
+        .unwrap_or_else(|| panic!("{}", said.err));
+    assert!(lead.contains("(mass = 0.05 kg, h = 5 mm), ") && lead.contains("(mass = 0.05 kg, h = 10 mm)"), "{lead}");
+}
+
+#[test]
+fn the_mass_of_a_damper_is_swept_in_grams() {
+    let first = format!("mass: swept, gap: 5 mm, {RIGID}");
+    let second = format!("mass: 20 g, gap: 5 mm, {RIGID}");
+    let sweep = "sweep: {mass: [{linear: {from: 100 g, to: 300 g, points: 3}}, 1 kg]}";
+    let masses = both(&text(MASS, &[&first, &second], HARMONIC, sweep), |damper| damper.particle_mass);
+    for (got, want) in masses.iter().zip([0.1, 0.2, 0.3, 1.0]) {
+        assert!((got[0] - want).abs() < 1e-15 && got[1] == 0.02, "{masses:?}");
     }
+    let bare = refused(&text(MASS, &[&first], HARMONIC, "sweep: {mass: [5, 6]}"));
+    assert!(bare.contains("`5` has no unit, but a mass is wanted"), "{bare}");
+    let nothing = refused(&text(MASS, &[&first], HARMONIC, "sweep: {mass_ratio: [0.1]}"));
+    assert!(nothing.contains("mass"), "{nothing}");
+}
+
+#[test]
+fn a_key_that_no_sweep_varies_says_what_to_sweep_instead() {
+    let damper = "mass: 100 g, gap: 5 mm, floor: {rigid: {restitution: swept}}";
+    let said = refused(&text(MASS, &[damper], HARMONIC, ""));
+    assert!(said.contains("no sweep varies this key") && said.contains("`contact_damping_ratio`"), "{said}");
     let stiffness = MASS.replace("5000 N/m", "swept");
     let said = refused(&text(&stiffness, &[], HARMONIC, "").replace("  dampers:\n", ""));
     assert!(said.contains("no sweep varies this key") && said.contains("`frequency_ratio`"), "{said}");

@@ -22,6 +22,8 @@ pub enum Parameter {
     FrequencyRatio,
     /// m′ of every damper.
     MassRatio,
+    /// mp + ms of every damper, kg.
+    Mass,
     /// h′ of every damper; `infinite` allowed.
     GapRatio,
     /// h of every damper, m.
@@ -142,7 +144,7 @@ const EXCITATION: Option<Part> = Some(Part::Excitation);
 
 impl Parameter {
     fn description(self) -> Description {
-        use Dimension::{AngularFrequency, Force, Impulse, Length, Time};
+        use Dimension::{AngularFrequency, Force, Impulse, Length, Mass, Time};
         use ParameterValue as Value;
         use Takes::{Quantity, Ratio, RatioOrInfinite, Words};
         let (symbol, takes, of, mark) = match self {
@@ -150,6 +152,7 @@ impl Parameter {
             Self::BaseAmplitudeRatio => ("aω²/g", Ratio, EXCITATION, "base_amplitude_ratio: swept"),
             Self::FrequencyRatio => ("ω′", Ratio, EXCITATION, "frequency_ratio: swept"),
             Self::MassRatio => ("m′", Ratio, DAMPER, "mass_ratio: swept"),
+            Self::Mass => ("", Quantity(Mass), DAMPER, "mass: swept"),
             Self::GapRatio => ("h′", RatioOrInfinite, DAMPER, "gap_ratio: swept"),
             Self::Gap => ("h", Quantity(Length), DAMPER, "gap: swept"),
             Self::DampingRatio => ("c′", Ratio, STRUCTURE, "damping_ratio: swept"),
@@ -345,6 +348,7 @@ impl DamperRecipe {
         let number = || number(parameter, value);
         match parameter {
             Parameter::MassRatio => self.mass = MassRecipe::Ratio(number()?.into()),
+            Parameter::Mass => self.mass = MassRecipe::Mass(number()?.into()),
             Parameter::MassReading => {
                 let modal = value == ParameterValue::Modal;
                 self.mass_reading = Given::Stated(if modal { MassReading::Modal } else { MassReading::Total });
