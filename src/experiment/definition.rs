@@ -469,11 +469,14 @@ impl Maximise {
     /// Bisections after the grid, at most.
     pub(crate) fn bisections(&self) -> u64 {
         match self.wanted {
-            SearchPoint::Maximum => 2 * u64::from(self.refine),
+            SearchPoint::Maximum => 2 * MOST_PEAKS as u64 * u64::from(self.refine),
             SearchPoint::Onset => MOST_BISECTIONS,
         }
     }
 }
+
+/// Peaks of a grid that a maximum is looked for at, the highest: a low one may hide a higher one between its points.
+pub(crate) const MOST_PEAKS: usize = 5;
 
 /// Bisections that bring any interval below the distance of two numbers that an onset is known by.
 const MOST_BISECTIONS: u64 = 60;

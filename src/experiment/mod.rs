@@ -67,6 +67,7 @@ pub use calibration::{
 pub(crate) use columns::Columns;
 pub use continuation::{BranchColumn, Continuation, RowSource, Stability};
 pub use continued::{ContinuedSweep, Direction};
+pub(crate) use definition::MOST_PEAKS;
 pub use definition::{
     AnimationSpec, Axis, AxisScale, AxisUnit, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError,
     Joined, Level, MapSpec, Mark, Maximise, Only, Panel, PeakMarks, SearchPoint, Source, Strip, Transient,

@@ -90,18 +90,18 @@ pub(super) fn of_the_study(study: &Study, judgement: &Judgement) -> Vec<(String,
     let times = RunTimes::read(&study.layout);
     let views = listed(study, judgement, times.as_ref());
     let assumptions = all_assumptions(study, judgement);
-    let mut written = vec![
+    [
         ("README.md", index(study, &views, times.as_ref())),
+        (STRIP, report::strip_svg(&views)),
+        (OVERVIEW, report::overview_svg(&views)),
         ("assumptions.md", report::assumptions(&assumptions)),
         (WHAT_STANDS, report::what_stands(&views, &study.sheet, &assumptions)),
         (WHAT_MOVES, report::what_moves(&views)),
         ("tolerances.md", report::tolerances(&views)),
         ("verdicts.json", verdicts(study, judgement)),
-    ];
-    if views.iter().any(|view| !view.judged.is_empty()) {
-        written.extend([(STRIP, report::strip_svg(&views)), (OVERVIEW, report::overview_svg(&views))]);
-    }
-    written.into_iter().map(|(name, text)| (format!("reports/{name}"), text)).collect()
+    ]
+    .map(|(name, text)| (format!("reports/{name}"), text))
+    .into()
 }
 
 /// The index of all pages.

@@ -1,16 +1,19 @@
 //! A point that is looked for over one parameter: the maximum of a measure, or the onset of events.
 //!
-//! For a maximum each round halves the two intervals beside the best point of a grid, so that its place is known to within the
-//! distance to its neighbours, and its value to what a parabola rises between them. An onset lies between the last point of the grid without an event and the first one with some;
+//! For a maximum each round halves the two intervals beside the best point of each of the highest peaks of a grid, as a low peak may hide
+//! a higher one between its points. So its place is known to within the distance to its neighbours, and its value to what a parabola
+//! rises between them; a peak that no point of the grid is next to is not seen. An onset lies between the last point of the grid without an event and the first one with some;
 //! as events are certified, halving that interval closes in on it to [`KNOWN`] of the parameter. Where the motion is chaotic, events
 //! begin here and there between two points of the grid, and sooner in a longer run: the onset is then known to no more than their
 //! distance. Values come from [`Evaluate`] as they are: ensemble means where the motion is chaotic.
+
+use std::ops::RangeInclusive;
 
 use rayon::prelude::*;
 
 use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
 use super::row_failure::RowFailure;
-use crate::experiment::{Maximise, ParameterValue, SearchPoint};
+use crate::experiment::{MOST_PEAKS, Maximise, ParameterValue, SearchPoint};
 use crate::measure::Evaluated;
 use crate::optimise::{Point, overshoot};
 use crate::text::words;
@@ -77,14 +80,20 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
         let mut tried = self.all(&self.maximise.grid)?;
         tried.sort_by(|a, b| a.at.total_cmp(&b.at));
         tried.dedup_by(|a, b| a.at == b.at);
+        let peaks = peaks(&tried);
         for _ in 0..self.maximise.refine {
-            let best = best(&tried).ok_or(RowFailure::NoGrid)?;
-            let between = neighbours(&tried, best).map(|other| between(tried[best].at, tried[other].at));
-            let new: Vec<f64> = between.filter(|at| tried.iter().all(|known| known.at != *at)).collect();
+            let mut new = Vec::new();
+            for within in &peaks {
+                let Some(best) = best(&tried, within) else { continue };
+                new.extend(neighbours(&tried, best).map(|other| between(tried[best].at, tried[other].at)));
+            }
+            new.sort_by(f64::total_cmp);
+            new.dedup();
+            new.retain(|at| tried.iter().all(|known| known.at != *at));
             tried.extend(self.all(&new)?);
             tried.sort_by(|a, b| a.at.total_cmp(&b.at));
         }
-        let best = best(&tried).ok_or(RowFailure::NoGrid)?;
+        let best = best(&tried, &(f64::NEG_INFINITY..=f64::INFINITY)).ok_or(RowFailure::NoGrid)?;
         let at = tried[best].at;
         let within = neighbours(&tried, best).map(|other| (tried[other].at - at).abs()).fold(0.0, f64::max);
         let rise = overshoot(best, |i| tried.get(i).map(|one| Point { x: one.at, y: one.value }));
@@ -150,9 +159,20 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
     }
 }
 
-/// The highest point; of equal ones the first.
-fn best(tried: &[Tried]) -> Option<usize> {
-    (0..tried.len()).reduce(|best, next| if tried[next].value > tried[best].value { next } else { best })
+/// The highest point of a range; of equal ones the first.
+fn best(tried: &[Tried], within: &RangeInclusive<f64>) -> Option<usize> {
+    let inside = (0..tried.len()).filter(|&i| within.contains(&tried[i].at));
+    inside.reduce(|best, next| if tried[next].value > tried[best].value { next } else { best })
+}
+
+/// The ranges between the neighbours of the highest peaks, highest first; of equal ones the first.
+fn peaks(tried: &[Tried]) -> Vec<RangeInclusive<f64>> {
+    let is_peak = |&i: &usize| neighbours(tried, i).all(|other| tried[other].value <= tried[i].value);
+    let mut peaks: Vec<usize> = (0..tried.len()).filter(is_peak).collect();
+    peaks.sort_by(|&one, &other| tried[other].value.total_cmp(&tried[one].value));
+    peaks.truncate(MOST_PEAKS);
+    let ends = |i: usize| tried[i.saturating_sub(1)].at..=tried[(i + 1).min(tried.len() - 1)].at;
+    peaks.into_iter().map(ends).collect()
 }
 
 fn neighbours(tried: &[Tried], of: usize) -> impl Iterator<Item = usize> {

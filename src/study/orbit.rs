@@ -24,7 +24,7 @@ use crate::experiment::{Continuation, Experiment, ParameterValue, Recipe, RowSou
 use crate::measure::{EvaluateError, Evaluated, Needs, Rigour, SolverChoice, measured_orbit, rounded};
 use crate::scene::{Scene, compile};
 use crate::table::Table;
-use crate::text::number::compact;
+use crate::text::number::quantity;
 use crate::text::words;
 
 /// The longest step, as a share of the range and of the motion.
@@ -317,8 +317,8 @@ impl Following<'_> {
                 "next to it the motion comes again upside down after half a period: it joins the branch that loses its symmetry there".into()
             }
             BranchEnd::Graze { parameter } => {
-                let at = compact(self.continuation.at(parameter), 12);
-                format!("a contact begins or ends without speed at {name} = {at}")
+                let at = quantity(self.continuation.at(parameter), self.continuation.along.unit(), 12);
+                format!("next to it, at {name} = {at}, a contact begins or ends without speed")
             }
             BranchEnd::CycleStart => "a contact comes to the instant at which the forcing cycle begins".into(),
             BranchEnd::Points => format!("{} points, as many as were asked for", self.continuation.points),

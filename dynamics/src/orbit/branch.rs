@@ -52,14 +52,7 @@ impl<E> Branch<E> {
     ) -> Result<Self, BranchError<E>> {
         let mut path = Path::new(system_at, orbit.cycles, along, parameter);
         let system = path.system(path.first())?;
-        let (shot, distance) = match closed(&system, orbit.begin(&system)?, orbit.cycles) {
-            Err(error) if is_sensitive(&orbit.multipliers) && !matches!(error, OrbitError::Engine(_)) => {
-                // The digits that it is known to do not lead back to it.
-                let alone = BranchPoint { parameter, orbit: orbit.clone(), special: None };
-                return Ok(Self { points: vec![alone], end: BranchEnd::Sensitive });
-            }
-            closed => closed?,
-        };
+        let (shot, distance) = closed(&system, orbit.begin(&system)?, orbit.cycles)?;
         let at = path.begin(shot, distance)?;
         Follower::new(path, along, &at).run(at)
     }
@@ -205,9 +198,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
             _ if at.shot.meets_its_ends(period) => BranchEnd::CycleStart,
             BranchEnd::Orbit(OrbitError::Engine(EngineError::Overrun(_))) => otherwise,
             // No step closes when rounding grows above that by itself.
-            BranchEnd::Orbit(_) if at.shot.map.multipliers().is_ok_and(|all| is_sensitive(&all)) => {
-                BranchEnd::Sensitive
-            }
+            BranchEnd::Orbit(_) if at.shot.map.multipliers().is_ok_and(is_sensitive) => BranchEnd::Sensitive,
             otherwise => otherwise,
         };
         self.end(at, end)
@@ -235,21 +226,29 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
             Err(error) => return Ok(Err(error)),
         };
         let beyond = (next.share > 1.0).then_some(1.0).or((next.share < 0.0).then_some(0.0));
-        self.keep_all(&specials)?;
         if let Some(end) = beyond {
             let ends = [at.share - end, next.share - end];
             let last = match special::zero(&mut self.path, at, [0.0, step], ends, |at| Ok(at.share - end)) {
                 Ok(Some((_, last))) => last,
-                Ok(None) => return Ok(Ok(Next::End(BranchEnd::Range))),
+                Ok(None) => {
+                    self.keep_all(&specials)?;
+                    return Ok(Ok(Next::End(BranchEnd::Range)));
+                }
                 Err(error) => return Ok(Err(error)),
             };
             let system = self.path.system(end)?;
-            let (shot, distance) = closed(&system, last.shot.start, self.path.cycles)?;
+            let (shot, distance) = match closed(&system, last.shot.start, self.path.cycles) {
+                Ok(closed) => closed,
+                // Nothing that was found before is lost.
+                Err(error) => return Ok(Err(error.into())),
+            };
+            self.keep_all(&specials)?;
             let orbit = self.path.orbit(&At { share: end, shot, distance, ..last })?;
             self.pending = false;
             self.points.push(BranchPoint { parameter: self.path.parameter(end), orbit, special: None });
             return Ok(Ok(Next::End(BranchEnd::Range)));
         }
+        self.keep_all(&specials)?;
         self.since += step;
         (self.pending, self.turns) = (true, false);
         if self.since >= KEPT * self.along.step {
@@ -378,7 +377,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
 }
 
 /// In a period, rounding grows above what an orbit closes to.
-fn is_sensitive(multipliers: &[Multiplier]) -> bool {
+fn is_sensitive(multipliers: Vec<Multiplier>) -> bool {
     multipliers.first().is_some_and(|largest| f64::EPSILON * largest.modulus > CLOSED)
 }
 
