@@ -161,7 +161,7 @@ pub struct Judged {
     /// What came out, in one line: `1.56 ± 0.12, 2.9 % above 1.516`, `true: steps back by at most 0.2 % of the range`.
     pub found: String,
     /// The first table that it reads and that is not there; `None` if all are.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub no_table: Option<NoTable>,
     /// For values.
     pub comparison: Option<Comparison>,

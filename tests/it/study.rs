@@ -434,10 +434,10 @@ fn every_simulation_is_reported_once() {
     let ear = Ear::default();
     Desk::new().run(2, &MadeUp::default(), &ear);
     let mut heard = ear.0.into_inner().unwrap();
-    assert_eq!((heard.remove(0).as_str(), heard.pop().unwrap().as_str()), ("63 to do", "ended"));
+    assert_eq!((heard.remove(0).as_str(), heard.pop().unwrap().as_str()), ("135 to do", "ended"));
     heard.sort();
     assert_eq!(heard, ["ch3-gap: 3 rows", "ch3-stop: 30 rows"]);
-    assert_eq!(ear.1.into_inner(), 63);
+    assert_eq!(ear.1.into_inner(), 135);
 }
 
 #[test]

@@ -53,7 +53,16 @@ impl<E> Branch<E> {
         let mut path = Path::new(system_at, orbit.cycles, along, parameter);
         let system = path.system(path.first())?;
         let (shot, distance) = closed(&system, orbit.begin(&system)?, orbit.cycles)?;
-        let at = path.begin(shot, distance)?;
+        let at = match path.begin(shot, distance) {
+            // The nearest systems that numbers can tell apart lead to other contacts: there is no direction to follow it in.
+            Err(BranchError::Orbit(error))
+                if is_sensitive(&orbit.multipliers) && !matches!(error, OrbitError::Engine(_)) =>
+            {
+                let alone = BranchPoint { parameter, orbit: orbit.clone(), special: None };
+                return Ok(Self { points: vec![alone], end: BranchEnd::Sensitive });
+            }
+            begun => begun?,
+        };
         Follower::new(path, along, &at).run(at)
     }
 
@@ -198,7 +207,9 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
             _ if at.shot.meets_its_ends(period) => BranchEnd::CycleStart,
             BranchEnd::Orbit(OrbitError::Engine(EngineError::Overrun(_))) => otherwise,
             // No step closes when rounding grows above that by itself.
-            BranchEnd::Orbit(_) if at.shot.map.multipliers().is_ok_and(is_sensitive) => BranchEnd::Sensitive,
+            BranchEnd::Orbit(_) if at.shot.map.multipliers().is_ok_and(|all| is_sensitive(&all)) => {
+                BranchEnd::Sensitive
+            }
             otherwise => otherwise,
         };
         self.end(at, end)
@@ -377,7 +388,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
 }
 
 /// In a period, rounding grows above what an orbit closes to.
-fn is_sensitive(multipliers: Vec<Multiplier>) -> bool {
+fn is_sensitive(multipliers: &[Multiplier]) -> bool {
     multipliers.first().is_some_and(|largest| f64::EPSILON * largest.modulus > CLOSED)
 }
 
