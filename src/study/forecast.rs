@@ -36,7 +36,6 @@ pub fn forecast(experiment: &Experiment, assumptions: &Assumptions) -> Vec<Strin
     of_scenes(experiment, assumptions)
         .into_iter()
         .map(|(_, warning)| warning)
-        .chain(transient_left(experiment, assumptions))
         .chain(missed.into_iter().map(|(case, warning)| of_case(&case, warning)))
         .collect()
 }
@@ -44,14 +43,16 @@ pub fn forecast(experiment: &Experiment, assumptions: &Assumptions) -> Vec<Strin
 /// Those that a run begins with: what may never end, and averages that begin too early.
 #[must_use]
 pub fn before_run(experiment: &Experiment, assumptions: &Assumptions) -> Vec<String> {
-    let endless = of_scenes(experiment, assumptions).into_iter().filter(|(cause, _)| *cause == Cause::Bounces);
-    endless.map(|(_, warning)| warning).chain(transient_left(experiment, assumptions)).collect()
+    let told = |(cause, _): &(Cause, String)| matches!(cause, Cause::Bounces | Cause::Transient);
+    of_scenes(experiment, assumptions).into_iter().filter(told).map(|(_, warning)| warning).collect()
 }
 
-/// Warnings of the scenes of an experiment, each once, with the first case that it is about.
+/// Warnings of the scenes of an experiment, each once, with the first case that it is about; that of a transient with the case in which
+/// it dies away most slowly.
 fn of_scenes(experiment: &Experiment, assumptions: &Assumptions) -> Vec<(Cause, String)> {
     let begun = ThreadTime::now();
     let mut warnings: Vec<(Cause, String)> = Vec::new();
+    let mut slowest: Option<(&Case, f64)> = None;
     for case in experiment.cases.iter().take_while(|_| begun.elapsed() <= PATIENCE) {
         let Some(scene) = scene_of(experiment, case, assumptions) else { continue };
         for (cause, warning) in of_scene(experiment, &scene, &case.solvers) {
@@ -59,18 +60,15 @@ fn of_scenes(experiment: &Experiment, assumptions: &Assumptions) -> Vec<(Cause, 
                 warnings.push((cause, of_case(case, warning)));
             }
         }
+        if let Some(decay) = decay_a_cycle(experiment, &scene)
+            && slowest.is_none_or(|(_, least)| decay < least)
+        {
+            slowest = Some((case, decay));
+        }
     }
+    let left = slowest.and_then(|(case, decay)| Some((case, transient(experiment.settings.skip, decay)?)));
+    warnings.extend(left.map(|(case, warning)| (Cause::Transient, of_case(case, warning))));
     warnings
-}
-
-/// The warning that averages begin while much of the free vibration is left, with the case in which it dies away most slowly.
-fn transient_left(experiment: &Experiment, assumptions: &Assumptions) -> Option<String> {
-    let begun = ThreadTime::now();
-    let cases = experiment.cases.iter().take_while(|_| begun.elapsed() <= PATIENCE);
-    let decays =
-        cases.filter_map(|case| Some((case, decay_a_cycle(experiment, &scene_of(experiment, case, assumptions)?)?)));
-    let (case, decay) = decays.min_by(|(_, one), (_, other)| one.total_cmp(other))?;
-    transient(experiment.settings.skip, decay).map(|warning| of_case(case, warning))
 }
 
 /// The scene of a case, if it has one. The settings of a mean hardly differ in what they take.
@@ -93,6 +91,7 @@ enum Cause {
     Dampers,
     Modes,
     Bounces,
+    Transient,
     Damping,
 }
 
