@@ -176,3 +176,24 @@ fn other_solvers_run_at_the_same_points_and_the_range_is_what_makes_stale() {
     desk.put("experiments/ch4/ch4-response.yaml", &both.replace("1 %", "2 %"));
     assert_eq!(desk.why("ch4-response"), ["experiments/ch4/ch4-response.yaml: refined.0.tolerance: 0.01 -> 0.02"]);
 }
+
+#[test]
+fn a_low_peak_of_a_grid_that_hides_the_highest_is_found() {
+    // By the points of the grid the peaks are 2.1 at 3, 1.6 at 5 and 1.1 at 7; beside the last one the curve rises to 4 at 7.4.
+    fn curve(x: f64) -> f64 {
+        let hill = |at: f64, height: f64, width: f64| height / (1.0 + (x - at) * (x - at) / (width * width));
+        hill(3.0, 2.0, 0.3) + hill(5.0, 1.5, 0.3) + hill(7.4, 4.0, 0.25)
+    }
+    let refined = "frequency_ratio: {refined: {from: 0.2, to: 7, start: 60 points, tolerance: 1 %}}";
+    let largest = RESPONSE
+        .replace(&format!(", {refined}"), "")
+        .replace(
+            "run:",
+            "maximise: {rms_velocity: {over: frequency_ratio, in: [1, 2, 3, 4, 5, 6, 7, 8, 9], refine: 12}}\nrun:",
+        )
+        .replace("x: frequency_ratio, y: rms_velocity, by: gap_ratio", "x: gap_ratio, y: rms_velocity");
+    let (_, table) = run(&Curve(|x, _| (curve(x), 0.0, false)), 2, &largest, &IgnoreEvents);
+    let [found, at] = ["rms_velocity", "frequency_ratio_at_maximum"].map(|column| table.floats(column).unwrap()[0]);
+    assert!((at - 7.4).abs() < 0.01, "it is found at {at}");
+    assert!((found - curve(7.4)).abs() < 0.01, "it is {found}");
+}

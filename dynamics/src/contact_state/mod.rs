@@ -11,6 +11,7 @@
 //! Its matrix is split into 2 × 2 blocks, from its normal modes ([`damped`]) or else by a Schur form ([`modes`]); forcing and time do not
 //! enter, the gap only in the constant of v.
 
+mod alike;
 pub(crate) mod bank;
 pub(crate) mod block;
 mod cluster;
@@ -28,6 +29,7 @@ use std::rc::Rc;
 use crate::arithmetic::matrix::{Matrix, dot};
 use crate::arithmetic::superposition::Superposition;
 use crate::contact::{Hold, Side};
+use crate::contact_state::alike::Alike;
 use crate::contact_state::conservative::{Conservative, Normal, face_of};
 use crate::contact_state::load::{Load, Steady};
 use crate::contact_state::spectral::Spectral;
@@ -160,7 +162,8 @@ impl Modes {
                     presses.for_each(|across| all.add_square(across.stiffness, &across.row));
                     all
                 });
-                modes::split(accelerations, &modes.bare.mass, stiffness.as_ref())?
+                let alike = Alike::all(system, contacts, damping, &modes.attached);
+                modes::split(accelerations, &modes.bare.mass, stiffness.as_ref(), &alike)?
             }
         };
         let (spectral, width) = (&modes.spectral, modes.spectral.width());

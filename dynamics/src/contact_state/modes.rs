@@ -3,22 +3,26 @@
 //! A coordinate r that no spring and no dashpot feels (its columns of the matrix are zero) makes a rigid-body motion. By
 //! the momentum along it, ρ = r + M_rr⁻¹ M_re e with the other coordinates e obeys ρ″ = load alone, and e never asks for
 //! r. So ρ is split off by the masses, its block is [[0, 1], [0, 0]] to the bit, and the eigenvalue iteration never sees
-//! the defective zeros that it could not tell apart.
+//! the defective zeros that it could not tell apart. Nor does it see the equal eigenvalues of particles that are [`alike`].
+
+use nalgebra::DMatrix;
 
 use crate::arithmetic::cholesky::Cholesky;
 use crate::arithmetic::matrix::Matrix;
-use crate::contact_state::spectral::Spectral;
+use crate::contact_state::alike::Alike;
+use crate::contact_state::spectral::{Spectral, product};
 use crate::contact_state::undamped::NormalModes;
 use crate::error::EngineError;
 
 /// Splits (p, p′) with p″ = (`accelerations`) (p, p′) and the mass matrix `mass` of p into blocks: V, row by row, and
 /// W = V⁻¹, column by column.
 ///
-/// `stiffness` is that of p where no dashpot acts.
+/// `stiffness` is that of p where no dashpot acts, `alike` the particles that are.
 pub(crate) fn split(
     accelerations: &[Vec<f64>],
     mass: &Matrix,
     stiffness: Option<&Matrix>,
+    alike: &[Alike],
 ) -> Result<Spectral, EngineError> {
     let order = accelerations.len();
     let size = 2 * order;
@@ -49,20 +53,14 @@ pub(crate) fn split(
         NormalModes::new(&stiffness, &chosen(&left)).map(|modes| modes.undamped())
     });
 
-    // Lengths are scaled by frequencies, so that the matrix is of one magnitude: (Ω e, e′).
-    let unit = |&i: &usize| if undamped.is_some() { 1.0 } else { scale(accelerations[i][i]) };
-    let frequency: Vec<f64> = elastic.iter().map(unit).collect();
-    let mut matrix = vec![0.0; 4 * count * count];
-    for (i, &row) in elastic.iter().enumerate() {
-        matrix[i * 2 * count + count + i] = frequency[i];
-        for (j, &column) in elastic.iter().enumerate() {
-            matrix[(count + i) * 2 * count + j] = accelerations[row][column] / frequency[j];
-            matrix[(count + i) * 2 * count + count + j] = accelerations[row][order + column];
-        }
-    }
     let inner = match undamped {
         Some(undamped) => undamped,
-        None if count > 0 => Spectral::split(2 * count, &matrix)?,
+        None if count > 0 => {
+            let half = |half: usize| {
+                DMatrix::from_fn(count, count, |i, j| accelerations[elastic[i]][half * order + elastic[j]])
+            };
+            damped([half(0), half(1)], &elastic, alike)?
+        }
         None => Spectral::default(),
     };
 
@@ -70,11 +68,11 @@ pub(crate) fn split(
     let [mut from_blocks, mut to_blocks] = [vec![0.0; size * width], vec![0.0; size * width]];
     let mut matrices = inner.matrices;
     for (i, &row) in elastic.iter().enumerate() {
-        for (half, unit) in [(0, frequency[i]), (1, 1.0)] {
+        for half in 0..2 {
             for k in 0..within {
                 let (inside, outside) = (half * count + i, half * order + row);
-                from_blocks[outside * width + k] = inner.from_blocks[inside * within + k] / unit;
-                to_blocks[outside * width + k] = inner.to_blocks[k * 2 * count + inside] * unit;
+                from_blocks[outside * width + k] = inner.from_blocks[inside * within + k];
+                to_blocks[outside * width + k] = inner.to_blocks[k * 2 * count + inside];
             }
         }
     }
@@ -95,6 +93,65 @@ pub(crate) fn split(
         matrices.push([0.0, 1.0, 0.0, 0.0]);
     }
     Ok(Spectral::new(from_blocks, to_blocks, matrices, inner.lasts).fastest_first())
+}
+
+/// Splits (e, e′) with e″ = A e + B e′: places of p in the order of `elastic`.
+fn damped(halves: [DMatrix<f64>; 2], elastic: &[usize], alike: &[Alike]) -> Result<Spectral, EngineError> {
+    let count = elastic.len();
+    // x = S e has what alike particles do against each other in coordinates of its own, whose k/m and c/m stand in `apart`.
+    let [mut turn, mut back] = [(); 2].map(|()| DMatrix::identity(count, count));
+    let mut apart = vec![None; count];
+    for one in alike {
+        one.turn(elastic, &mut turn, &mut back, &mut apart);
+    }
+    let halves = if alike.is_empty() { halves } else { halves.map(|half| product(&turn, &product(&half, &back))) };
+    let together: Vec<usize> = (0..count).filter(|&i| apart[i].is_none()).collect();
+    let few = together.len();
+
+    // Lengths are scaled by frequencies, so that the matrix is of one magnitude: (Ω x, x′).
+    let frequency = |i: usize| scale(apart[i].map_or(halves[0][(i, i)], |[stiffness, _]| stiffness));
+    let mut matrix = vec![0.0; 4 * few * few];
+    for (i, &row) in together.iter().enumerate() {
+        matrix[i * 2 * few + few + i] = frequency(row);
+        for (j, &column) in together.iter().enumerate() {
+            matrix[(few + i) * 2 * few + j] = halves[0][(row, column)] / frequency(column);
+            matrix[(few + i) * 2 * few + few + j] = halves[1][(row, column)];
+        }
+    }
+    let inner = if few > 0 { Spectral::split(2 * few, &matrix)? } else { Spectral::default() };
+
+    let (within, mut matrices) = (inner.width(), inner.matrices);
+    let width = within + 2 * (count - few);
+    let (mut v, mut w) = (DMatrix::zeros(2 * count, width), DMatrix::zeros(width, 2 * count));
+    for (i, &row) in together.iter().enumerate() {
+        for (half, unit) in [(0, frequency(row)), (1, 1.0)] {
+            for k in 0..within {
+                let (inside, outside) = (half * few + i, half * count + row);
+                v[(outside, k)] = inner.from_blocks[inside * within + k] / unit;
+                w[(k, outside)] = inner.to_blocks[k * 2 * few + inside] * unit;
+            }
+        }
+    }
+    for (i, ratios) in apart.iter().enumerate() {
+        if let Some([stiffness, damping]) = *ratios {
+            for (half, unit) in [(0, frequency(i)), (1, 1.0)] {
+                let k = 2 * matrices.len() + half;
+                v[(half * count + i, k)] = 1.0 / unit;
+                w[(k, half * count + i)] = unit;
+            }
+            matrices.push([0.0, frequency(i), -stiffness / frequency(i), -damping]);
+        }
+    }
+    if !alike.is_empty() {
+        for half in 0..2 {
+            let rows = product(&back, &v.rows(half * count, count).into_owned());
+            v.rows_mut(half * count, count).copy_from(&rows);
+            let columns = product(&w.columns(half * count, count).into_owned(), &turn);
+            w.columns_mut(half * count, count).copy_from(&columns);
+        }
+    }
+    let by_rows = |matrix: DMatrix<f64>| matrix.transpose().as_slice().to_vec();
+    Ok(Spectral::new(by_rows(v), by_rows(w), matrices, inner.lasts))
 }
 
 /// The frequency that a coordinate has alone, 1 if it has none: the unit of its rate.

@@ -1,5 +1,8 @@
 //! Modes at critical damping beside others, where two eigenvalues are one and have one eigenvector.
 
+use std::time::Duration;
+
+use shotdamp::accuracy::precise::precise;
 use shotdamp::dynamics::{HybridSystem, Matrix, event_driven};
 
 use super::arrays::{Dice, blows, chain, cycles, particle, spring, unit};
@@ -46,5 +49,38 @@ pub(super) fn energy_is_balanced_where_twins_press_faces_of_critical_damping() {
         system.drive = blows(0.5, dice.between(0.3, 3.0));
         let response = event_driven(&system, &cycles(4)).unwrap_or_else(|error| panic!("{seed}: {error}"));
         assert!(response.proof.energy_residual < 1e-11, "{seed}: {:e}", response.proof.energy_residual);
+    }
+}
+
+#[test]
+pub(super) fn particles_that_are_alike_move_as_they_do_in_many_digits_however_near_to_critical_damping() {
+    // Of n particles on one mass n − 1 shares press their faces as if that were at rest: as many equal pairs of eigenvalues, and each pair
+    // nearly one at critical damping. What differs beside is the gap, and the mass where spring and dashpot go with it.
+    for (seed, apart) in
+        [0.0, 1e-15, -1e-13, 1e-11, -1e-9, 1e-8, -1e-7, 1e-6, 1e-5, -1e-4, 1e-3].into_iter().enumerate()
+    {
+        let mut dice = Dice(seed as u64);
+        let omega = dice.between(30.0, 300.0);
+        let mut system = chain(&[1.0], dice.between(100.0, 1e4), dice.between(0.1, 5.0));
+        let (mass, are_equal) = (dice.between(0.01, 0.1), seed % 2 == 0);
+        system.particles = (0..3 + seed % 3)
+            .map(|i| {
+                let mass = if are_equal { mass } else { mass * dice.between(0.5, 2.0) };
+                let face = spring(mass * omega * omega, 2.0 * (1.0 + apart) * mass * omega);
+                particle(mass, 0.01 + 0.003 * i as f64, unit(1, 0), [face, face])
+            })
+            .collect();
+        system.drive = blows(0.08, dice.between(0.5, 1.0));
+        let options = cycles(4);
+        let run = event_driven(&system, &options).unwrap_or_else(|error| panic!("{apart}: {error}"));
+        let exact =
+            precise(&system, &options, Duration::from_secs(120)).unwrap_or_else(|error| panic!("{apart}: {error}"));
+        assert_eq!(run.proof.events, exact.proof.events, "{apart}");
+        let rms = exact.window().rms_velocity();
+        within(&format!("RMS velocity at 1 + {apart:e}"), run.window().rms_velocity() / rms, 1.0, 1e-13);
+        for (own, exact) in run.final_particles.iter().zip(&exact.final_particles) {
+            within(&format!("particle at 1 + {apart:e}"), own[0], exact[0], 1e-12);
+            within(&format!("its rate at 1 + {apart:e}"), own[1], exact[1], 1e-12 * omega);
+        }
     }
 }
