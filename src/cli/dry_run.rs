@@ -44,7 +44,7 @@ pub(super) fn dry_run(layout: &Layout, found: Found, args: &RunArgs, common: &Ar
         );
     }
     if let Some(ahead) = total.time(threads) {
-        text += &format!("{ahead} on {threads} threads\n");
+        text += &format!("{ahead} on {}\n", counted(threads, "thread", "threads"));
     }
     print(&text)?;
     print_error(&chosen.left_out());

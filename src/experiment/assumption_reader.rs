@@ -164,7 +164,7 @@ pub(super) fn read_entry(at: At<'_>, place: Place) -> Option<AssumptionEntry> {
     });
     let kind = match (quantity, readings) {
         (Some(None), Some(None)) => {
-            let help = "add `quantity: length`, `quantity: ratio`, …, or `readings: [one, other]`".to_owned();
+            let help = format!("add `quantity: …`, one of {}, or `readings: [one, other]`", quantities().join(", "));
             at.report("this assumption has no kind", Some(help))
         }
         (Some(quantity), Some(readings)) => Some(AssumptionKind { quantity, readings: readings.unwrap_or_default() }),
@@ -175,6 +175,9 @@ pub(super) fn read_entry(at: At<'_>, place: Place) -> Option<AssumptionEntry> {
     let reason = keys.required("reason", "Why this value", |at| at.text());
     let other = |node: &Node, findings: &Findings| {
         let other = value(node, findings)?;
+        if in_force.as_ref() == Some(&other) {
+            return findings.wrong(node.span, "the value in force itself: a move there changes nothing");
+        }
         in_force.as_ref().is_none_or(|one| alike(one, &other, node, findings)).then_some(other)
     };
     let range = keys.optional("range", "Other values that could be defended", |at| {
@@ -202,17 +205,20 @@ const COUNTED: [(&str, Quantity); 4] = [
     ("places", Quantity::Places),
 ];
 
+/// Kinds of quantities.
+fn quantities() -> Vec<&'static str> {
+    COUNTED.iter().map(|(word, _)| *word).chain(words::<Dimension>().iter().copied()).collect()
+}
+
 fn read_quantity(at: At<'_>) -> Option<Quantity> {
-    let known = || COUNTED.iter().map(|(word, _)| *word).chain(words::<Dimension>().iter().copied()).collect();
     let read = |node: &Node, findings: &Findings| {
         let word = scalar(node, findings)?;
         let counted = COUNTED.into_iter().find(|(known, _)| *known == word).map(|(_, quantity)| quantity);
-        counted.or_else(|| from_word::<Dimension>(word).map(Quantity::Of)).or_else(|| {
-            let known: Vec<&str> = known();
-            no_such(findings, node.span, "kind of quantity", word, &known)
-        })
+        counted
+            .or_else(|| from_word::<Dimension>(word).map(Quantity::Of))
+            .or_else(|| no_such(findings, node.span, "kind of quantity", word, &quantities()))
     };
-    at.form(read, |it| parts::one_of_words(it.about(), &known()))
+    at.form(read, |it| parts::one_of_words(it.about(), &quantities()))
 }
 
 pub(super) fn read_value(node: &Node, kind: &AssumptionKind, findings: &Findings) -> Option<AssumptionValue> {

@@ -211,6 +211,13 @@ impl SceneReader<'_> {
         let ceiling = keys.optional("ceiling", "The surface above; like the floor unless stated", surface);
         let stop = keys.optional("stop", "A limit stop", |at| self.stop(at, kind));
         let walls = keys.optional("walls", "Soft walls", |at| self.walls(at, kind));
+        let is_rigid = |(surface, _): &(SurfaceRecipe, _)| matches!(surface, SurfaceRecipe::Rigid { .. });
+        let are_rigid = floor.as_ref().is_some_and(is_rigid)
+            && ceiling.as_ref().is_some_and(|ceiling| ceiling.as_ref().is_none_or(is_rigid));
+        if are_rigid && matches!(stop, Some(Some(_))) {
+            let message = "a limit stop ends the compression of a resilient face, and both faces are rigid";
+            return keys.get("stop")?.wrong(message);
+        }
         keys.close()?;
         let (floor, floor_swept) = floor?;
         let (ceiling, ceiling_swept) = ceiling?.unwrap_or_else(|| (floor.clone(), floor_swept.clone()));

@@ -36,6 +36,10 @@ pub(super) struct Statement {
     key: Vec<String>,
     /// Its value, or the values that it takes.
     amounts: Vec<Amount>,
+    /// The same as text.
+    text: String,
+    /// The table, figure or section.
+    place: String,
     span: Span,
 }
 
@@ -62,7 +66,11 @@ impl Statement {
         let among = matches!(input.amounts.as_slice(), [one] if self.amounts.iter().any(|known| known.is(one)));
         let same = self.amounts.len() == input.amounts.len()
             && self.amounts.iter().zip(&input.amounts).all(|(known, amount)| known.is(amount));
-        input.path.ends_with(&self.key) && (among || same)
+        self.speaks_of(input) && (among || same)
+    }
+
+    fn speaks_of(&self, input: &Input) -> bool {
+        input.path.ends_with(&self.key)
     }
 }
 
@@ -77,8 +85,8 @@ pub(super) fn read_chapters(at: At<'_>) -> Option<StatedByChapter> {
 /// `place: {key: value}`.
 pub(super) fn read_statements(at: At<'_>) -> Option<Vec<Statement>> {
     let form = "statements are written as `Table 6: {key: value}`";
-    let statement = |key: &str, span, at: At<'_>| {
-        let (amounts, _) = at.form(
+    let statement = |place: &str, key: &str, span, at: At<'_>| {
+        let (amounts, text) = at.form(
             |node, findings| {
                 let help = "what a text states of an input is a number, or a list of numbers";
                 leaf(node).or_else(|| findings.wrong(node.span, help))
@@ -88,16 +96,18 @@ pub(super) fn read_statements(at: At<'_>) -> Option<Vec<Statement>> {
                 parts::any_of("A number, or a list", vec![number.clone(), parts::list("Numbers", number)])
             },
         )?;
-        Some(Statement { key: key.split('.').map(str::to_owned).collect(), amounts, span })
+        let key = key.split('.').map(str::to_owned).collect();
+        Some(Statement { key, amounts, text, place: place.to_owned(), span })
     };
-    let place = |_: &str, _, at: At<'_>| {
-        at.called("What this table, figure or section states, by key", |at| at.by_name(json!({}), form, statement))
+    let place = |place: &str, _, at: At<'_>| {
+        let of_place = |key: &str, span, at: At<'_>| statement(place, key, span, at);
+        at.called("What this table, figure or section states, by key", |at| at.by_name(json!({}), form, of_place))
     };
     at.by_name(json!({}), form, place).map(|statements| statements.concat())
 }
 
-/// The inputs of an experiment that neither the study's statements for its chapter nor its own give, `key value`; none if nothing
-/// is stated. A statement of its own that gives none of its inputs is reported.
+/// The inputs of an experiment that neither the study's statements for its chapter nor its own give, `key value`, with another value that
+/// one of these states for such a key, `key value (Table 2: other)`; none if nothing is stated. A statement of its own that gives none of its inputs is reported.
 pub(super) fn without_source(
     root: &Node,
     of_chapter: &[Statement],
@@ -112,17 +122,24 @@ pub(super) fn without_source(
         let key = statement.key.join(".");
         findings.wrong::<()>(statement.span, format!("no input of this experiment is the `{key}` that is stated here"));
     }
-    let has_source = |input: &Input| of_chapter.iter().chain(own).any(|statement| statement.gives(input));
-    let mut listed: Vec<(String, Vec<String>)> = Vec::new();
+    let statements = || of_chapter.iter().chain(own);
+    let has_source = |input: &Input| statements().any(|statement| statement.gives(input));
+    let mut listed: Vec<(String, Vec<String>, Vec<String>)> = Vec::new();
     for input in inputs.into_iter().filter(|input| !has_source(input)) {
         let key = input.name();
-        match listed.iter_mut().find(|(known, _)| *known == key) {
-            Some((_, texts)) if texts.contains(&input.text) => {}
-            Some((_, texts)) => texts.push(input.text),
-            None => listed.push((key, vec![input.text])),
+        let others = statements().filter(|statement| statement.speaks_of(&input));
+        let others = others.map(|statement| format!("{}: {}", statement.place, statement.text)).collect();
+        match listed.iter_mut().find(|(known, ..)| *known == key) {
+            Some((_, texts, _)) if texts.contains(&input.text) => {}
+            Some((_, texts, _)) => texts.push(input.text),
+            None => listed.push((key, vec![input.text], others)),
         }
     }
-    listed.into_iter().map(|(key, texts)| format!("{key} {}", texts.join(", "))).collect()
+    let line = |(key, texts, others): (String, Vec<String>, Vec<String>)| {
+        let others = if others.is_empty() { String::new() } else { format!(" ({})", others.join("; ")) };
+        format!("{key} {}{others}", texts.join(", "))
+    };
+    listed.into_iter().map(line).collect()
 }
 
 /// Parts of an experiment with inputs, and which of their keys are meant; all where none is named.

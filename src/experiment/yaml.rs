@@ -107,7 +107,9 @@ where
             }
             Some(Err(error)) => {
                 let start = error.marker().byte_offset().unwrap_or_default();
-                self.findings.wrong(Span { start, end: start + 1 }, format!("this is no YAML: {}", error.info()))
+                let help = error.info().contains("tab").then(|| "indent with spaces".to_owned());
+                let message = format!("this is no YAML: {}", error.info());
+                self.findings.report(Span { start, end: start + 1 }, message, help)
             }
         }
     }

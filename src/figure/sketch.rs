@@ -296,7 +296,7 @@ fn mass(sheet: &Sheet, scene: &Scene) {
             notes.push(format!("soft walls {}", quantity(walls.stiffness, "N/m", 3)));
         }
     }
-    arrow(sheet, At { x: 340.0, y: 16.0 }, At { x: 340.0, y: base.top - 6.0 }, VERMILION);
+    arrow(sheet, At { x: 340.0, y: base.top - 2.0 }, At { x: 340.0, y: 16.0 }, VERMILION);
     let drive = match &scene.excitation {
         Excitation::SingleImpulse { impulse, .. } => format!("one impulse, {}", quantity(*impulse, "N s", 3)),
         Excitation::ImpulseTrain { impulse, period } => {

@@ -56,6 +56,9 @@ impl History<'_> {
         let peaks = self.positive_peaks();
         let Some(first) = peaks.first() else { return f64::NAN };
         let rate = decay(self.scene);
+        if rate.is_nan() {
+            return f64::NAN;
+        }
         peaks.iter().fold(0.0, |worst: f64, peak| {
             let expected = first.height * libm::exp(-rate * (peak.time - first.time));
             worst.max((peak.height / expected - 1.0).abs())

@@ -127,7 +127,7 @@ measures! {
     CeilingCompression: "m", "", "", "largest compression of the ceiling in the time history, of all dampers", Trace, Own, Any;
     LastPeak: "m", "", "", "last crest of the displacement in the time history", Trace, Own, Any;
     PeakVariation: "", "", "", "(largest − smallest)/mean of the crests above zero in the time history", Trace, Own, Any;
-    PeakDecayError: "", "", "", "largest relative departure of the crests above zero in the time history from exp(−c′ ωₙ t), the first one as reference", Trace, Own, Any;
+    PeakDecayError: "", "", "", "largest relative departure of the crests above zero in the time history from exp(−c′ ωₙ t), the first one as reference; of a single mass", Trace, Own, Any;
     Drift: "", "", "", "modulus of the RMS velocity of the first half of the window over that of the second, less 1: zero once transients are gone; of an odd number of cycles the first half has one more; undefined of a single cycle", Run, Own, Any;
     FloorImpactLag: "s", "", "", "shortest time between an impulse and a floor contact in the time history, whichever comes first; infinite without such a contact, undefined where no impulse stands in the time history", Trace, Own, Any;
     CeilingImpactLag: "s", "", "", "shortest time between an impulse and a ceiling contact in the time history, whichever comes first; infinite without such a contact, undefined where no impulse stands in the time history", Trace, Own, Any;

@@ -68,7 +68,10 @@ impl Measure {
     fn why_undefined(self, motion: Option<MotionKind>, one: &Measured, particles: Particles) -> &'static str {
         match self {
             Self::FloorImpactLag | Self::CeilingImpactLag => "no impulse stands in the time history",
-            Self::LastPeak | Self::PeakVariation | Self::PeakDecayError => "the time history has no crest",
+            Self::LastPeak | Self::PeakVariation => "the time history has no crest",
+            Self::PeakDecayError => {
+                "the time history has no crest, or the structure is no single mass and decays in many ways"
+            }
             Self::NaturalFrequency | Self::CleanNaturalFrequency | Self::ExactNaturalFrequency | Self::Mac => {
                 "there is no such mode"
             }

@@ -240,6 +240,9 @@ fn read_tolerance(at: At<'_>) -> Option<Tolerance> {
         [("relative", "Fraction of the published value"), ("absolute", "In the unit in which the value is printed")];
     let size = keys.exactly_one(&forms, |key, at| {
         let amount = at.number_above_zero()?;
+        if key == "relative" && amount >= 1.0 {
+            return at.wrong("a tolerance as wide as the published value would pass any number near zero; 5 % is 0.05");
+        }
         Some(if key == "relative" { ToleranceSize::Relative(amount) } else { ToleranceSize::Absolute(amount) })
     });
     let reason = keys.required("reason", "Why", |at| at.text());

@@ -9,6 +9,9 @@ use crate::text::number::signed;
 
 pub(crate) fn monotone(claim: &Monotone, view: &View<'_>) -> Result<Decision, Absence> {
     let mut line = view.line(claim.source(), &claim.of, &claim.over, None)?;
+    if line.x.len() < 2 {
+        return Err(Absence::NoRow(format!("one point of `{}` neither rises nor falls", claim.of)));
+    }
     let (top, range) = (line.highest(), line.range());
     let part = match claim.part {
         Part::Whole => 0..line.x.len(),

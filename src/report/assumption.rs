@@ -21,7 +21,15 @@ pub(super) fn without_source(inputs: &[String]) -> String {
         return String::new();
     }
     let inputs: Vec<String> = inputs.iter().map(|input| format!("`{input}`")).collect();
-    format!("Neither stated in the text of the study nor declared as an assumption: {}.\n\n", inputs.join(" · "))
+    let others = if inputs.iter().any(|input| input.ends_with(")`")) {
+        " (in brackets another value that the text does state)"
+    } else {
+        ""
+    };
+    format!(
+        "Neither stated in the text of the study nor declared as an assumption{others}: {}.\n\n",
+        inputs.join(" · ")
+    )
 }
 
 /// `reports/assumptions.md`: all assumptions with the entries of the experiments that use them.

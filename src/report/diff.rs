@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::movement::{Moved, Movement};
+use super::movement::{COVERAGE, Moved, Movement};
 use crate::text::number::{quantity, signed, significant};
 use crate::text::words::counted;
 
@@ -32,6 +32,9 @@ pub fn diff(movements: &[(String, Movement)], whole: &[String], not_run: &[Strin
         text += &list("judged differently", &movement.judged_differently, description, |(name, a, b)| {
             format!("{name}: {a} -> {b}")
         });
+        text += &list("the same verdict on other numbers", &movement.read_differently, description, |(name, a, b)| {
+            format!("{name}: {a} -> {b}")
+        });
         text += &list("beyond their uncertainty", &beyond, description, |moved| line(moved));
         text += &list("within their uncertainty", &within, description, |moved| line(moved));
     }
@@ -39,7 +42,7 @@ pub fn diff(movements: &[(String, Movement)], whole: &[String], not_run: &[Strin
     let count = |what: fn(&Movement) -> usize| movements.iter().map(|(_, movement)| what(movement)).sum::<usize>();
     let beyond = count(|movement| movement.moved.iter().filter(|moved| moved.is_beyond()).count());
     let moved = count(|movement| movement.moved.len());
-    let others = count(|movement| movement.gone.len() + movement.new.len() + movement.judged_differently.len());
+    let others = count(Movement::words);
     text += &format!(
         "{}: {} the same to the bit, {} moved within their uncertainty, {beyond} beyond it; {} otherwise{}.\n",
         counted(count(|movement| movement.same) + moved, "number", "numbers"),
@@ -80,8 +83,8 @@ fn line(moved: &Moved) -> String {
     let by = if change.is_nan() {
         String::new()
     } else if *u > 0.0 {
-        let (times, u) = (significant(moved.deviation(), 2), significant(*u, 2));
-        format!(", {}: {times} times its uncertainty of {u}", signed(change, 2))
+        let (times, width) = (significant(moved.deviation() / COVERAGE, 2), significant(COVERAGE * u, 2));
+        format!(", {}: {times} times its uncertainty of ± {width}", signed(change, 2))
     } else {
         format!(", {}; no uncertainty is known", signed(change, 2))
     };

@@ -59,7 +59,12 @@ pub fn explain(view: &EntryView<'_>) -> String {
         text += &format!("  {:<10} {} chosen by it{also}\n", "fitted", names(&view.chosen_by));
     }
     if view.moves.is_empty() {
-        text += "\nNo assumption was moved for it.\n";
+        let unknown = judged.no_table.is_some();
+        text += if unknown {
+            "\nMoves stand in the table that is missing.\n"
+        } else {
+            "\nNo assumption was moved for it.\n"
+        };
     } else {
         text += "\nOne assumption moved at a time, the most telling first\n";
         if let Some(printed) = view.printed.filter(|_| view.moves.iter().any(|one| shift(view, one).is_some())) {

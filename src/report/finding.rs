@@ -86,11 +86,15 @@ pub(super) fn lines(one: &Judged) -> Vec<(&'static str, String)> {
 }
 
 /// The command that computes the entry's experiment anew, and nothing else; where another table is not there, that one's. Empty where
-/// there is no experiment to be run.
+/// no run makes up for what is missing.
 pub(super) fn rerun(one: &Judged) -> String {
     match &one.no_table {
         Some(NoTable { why: WhyNoTable::NoExperiment, .. }) => String::new(),
+        Some(NoTable { why: WhyNoTable::Stale | WhyNoTable::NotRun, experiment }) => {
+            format!("shotdamp run {experiment}")
+        }
         Some(NoTable { experiment, .. }) => format!("shotdamp run --force {experiment}"),
+        None if one.verdict == Verdict::Missing => String::new(),
         None => format!("shotdamp run --force {}", one.experiment),
     }
 }

@@ -10,7 +10,7 @@ use crate::text::words;
 use super::json::{Number, Standing};
 
 /// Coverage factor, as in a comparison with the study.
-const COVERAGE: f64 = 2.0;
+pub(super) const COVERAGE: f64 = 2.0;
 
 /// A number that is not the same any more.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,8 +49,10 @@ pub struct Movement {
     pub same: usize,
     /// Numbers that are not, the farthest first.
     pub moved: Vec<Moved>,
-    /// Verdicts and findings in words that changed: name, old, new.
+    /// Verdicts that changed: name, old, new.
     pub judged_differently: Vec<(String, String, String)>,
+    /// What claims of the same verdict rest on: name, old, new.
+    pub read_differently: Vec<(String, String, String)>,
     /// Rows or entries that only the first has.
     pub gone: Vec<String>,
     /// Rows or entries that only the second has.
@@ -61,14 +63,18 @@ impl Movement {
     /// True if nothing moved, came or went.
     #[must_use]
     pub fn is_none(&self) -> bool {
-        self.moved.is_empty() && self.judged_differently.is_empty() && self.gone.is_empty() && self.new.is_empty()
+        self.moved.is_empty() && self.words() == 0
+    }
+
+    /// Differences that are no number's.
+    pub(super) fn words(&self) -> usize {
+        self.judged_differently.len() + self.read_differently.len() + self.gone.len() + self.new.len()
     }
 
     /// True if something changed that no uncertainty explains.
     #[must_use]
     pub fn is_beyond(&self) -> bool {
-        let words = !(self.judged_differently.is_empty() && self.gone.is_empty() && self.new.is_empty());
-        words || self.moved.iter().any(Moved::is_beyond)
+        self.words() > 0 || self.moved.iter().any(Moved::is_beyond)
     }
 
     fn number(&mut self, name: &str, unit: &str, a: (f64, f64), b: (f64, f64)) {
@@ -119,7 +125,7 @@ pub fn between_verdicts(a: &[Standing], b: &[Standing]) -> Movement {
         if old.verdict != new.verdict {
             movement.judged_differently.push((old.id.clone(), old.verdict.clone(), new.verdict.clone()));
         } else if old.numbers.is_empty() && new.numbers.is_empty() && old.found != new.found {
-            movement.judged_differently.push((old.id.clone(), old.found.clone(), new.found.clone()));
+            movement.read_differently.push((old.id.clone(), old.found.clone(), new.found.clone()));
         }
         for (name, number) in &old.numbers {
             let there = new.numbers.get(name).map_or((f64::NAN, f64::NAN), |number| (number.value, number.u));

@@ -75,7 +75,7 @@ impl Scene {
         let refuse = |message: String| Err(StartError(message));
         let moves = start.displacement != 0.0 || start.velocity != 0.0;
         if moves && !matches!(self.structure, Structure::SingleMass(_)) {
-            return refuse("displacement and velocity of a start are those of a single mass".into());
+            return refuse("displacement and velocity of a start are those of a single mass; strike other structures once, with `single_impulse`".into());
         }
         let (given, dampers) = (start.particles.len(), self.dampers.len());
         if given > 0 && given != dampers {

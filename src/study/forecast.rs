@@ -179,7 +179,7 @@ fn transient(skip: u32, decay: f64) -> Option<String> {
             "next to nothing damps it".into()
         };
         format!(
-            "after {}, {} % of the free vibration is left without dampers, and is part of the averages; {remedy}",
+            "after {}, {} % of the free vibration remains in the run without dampers, and is part of the averages; {remedy}",
             counted(skip as usize, "cycle", "cycles"),
             significant(100.0 * left, 2)
         )

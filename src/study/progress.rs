@@ -122,10 +122,14 @@ impl Ahead {
                     Some(seconds) => format!("{} of processor time", quantity(*seconds, "s", 2)),
                     None => "restored from earlier tables".into(),
                 };
-                let left = match (self.experiments, self.simulations) {
-                    (0, _) => "none left".into(),
-                    (1, simulations) => format!("1 experiment left, {simulations} simulations at most"),
-                    (many, simulations) => format!("{many} experiments left, {simulations} simulations at most"),
+                let most = || match self.simulations {
+                    1 => "1 simulation".to_owned(),
+                    many => format!("{many} simulations"),
+                };
+                let left = match self.experiments {
+                    0 => "none left".into(),
+                    1 => format!("1 experiment left, {} at most", most()),
+                    many => format!("{many} experiments left, {} at most", most()),
                 };
                 let rows = counted(*rows, "row", "rows");
                 Some(format!("{experiment}: {rows}{failed}, {took}; {left}\n"))

@@ -126,8 +126,10 @@ impl Snapshot {
         let changed = known.study.changed_assumptions(&shared, texts)?;
         let mut look = Look { layout, taken, settled: false };
         let unchanged = shared == known.study.inputs;
-        let index_is_current = unchanged && look.holds(&mut known.study.outputs);
         let texts = texts_by_experiment(texts);
+        // The index has a line for an experiment that was deleted since then.
+        let all_there = known.experiments.keys().all(|id| texts.contains_key(id.as_str()));
+        let index_is_current = unchanged && all_there && look.holds(&mut known.study.outputs);
         let mut used = Used::new();
         known.experiments.retain(|id, seen| {
             let Some(texts) = texts.get(id.as_str()) else { return false };

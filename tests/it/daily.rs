@@ -384,7 +384,7 @@ fn a_mistake_in_a_reference_leaves_its_verdicts_on_the_pages() {
 fn a_run_of_one_experiment_says_that_its_averages_begin_too_early() {
     let desk = Desk::of_one("experiments/ch3/ch3-long.yaml", crate::desk::THREE_GAPS);
     let said = shotdamp(&desk, &["run", "ch3-long"]);
-    let warning = "warning: ch3-long: after 2 cycles, 53 % of the free vibration is left without dampers";
+    let warning = "warning: ch3-long: after 2 cycles, 53 % of the free vibration remains in the run without dampers";
     assert!(said.err.contains(warning) && said.err.matches("free vibration").count() == 1, "{}", said.err);
     // Nothing is simulated, so nothing is to be warned of.
     assert!(!shotdamp(&desk, &["run", "ch3-long"]).err.contains("free vibration"));

@@ -599,7 +599,8 @@ gap: {quantity: lenght, value: 1 mm, reason: none}
         [
             "1:33 `5 s` is not a length | write for example 5 mm",
             "2:41 this assumption has no reading `heavy` | known are `base`, `loaded`",
-            "3:1 this assumption has no kind | add `quantity: length`, `quantity: ratio`, …, or `readings: [one, other]`",
+            "3:1 this assumption has no kind | add `quantity: …`, one of ratio, count, damping_curve, places, length, mass, time, force, impulse, stiffness, damping, velocity, \
+             acceleration, angular_frequency, stress, density, or `readings: [one, other]`",
             "4:17 `lenght` is not a kind of quantity | did you mean `length`?",
         ]
     );

@@ -65,7 +65,7 @@ fn a_number_that_neither_the_text_nor_an_assumption_gives_is_listed() {
         "impulse_train.at [0.25, 0.5]",
         "impulse_train.impulse 1 N s",
         "scene.observe [0.5, 0.5]",
-        "frequency_ratio 0.5",
+        "frequency_ratio 0.5 (Table 5: 1)",
         "run.skip 25 cycles",
         "run.average 100 cycles",
     ];

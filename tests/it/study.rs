@@ -69,7 +69,7 @@ fn a_row_is_a_case_under_a_solver_in_a_variant() {
 fn of_a_row_that_nobody_audits_the_table_has_no_residual_and_the_row_counts() {
     let stopped = THREE_GAPS
         .replace(", sensitivity: none", "")
-        .replace("floor: {", "stop: {length: assumed, restitution: 0}, floor: {");
+        .replace("floor: {", "stop: {length: assumed, restitution: 0}, ceiling: {resilient: {stiffness_ratio: 1, damping_ratio: 0.1}}, floor: {");
     let desk = Desk::of_one("experiments/ch3/ch3-long.yaml", &stopped);
     // Assumptions are moved for numbers that are compared.
     let entry =

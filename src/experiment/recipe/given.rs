@@ -228,7 +228,7 @@ impl<'a> Inputs<'a> {
         let missing = || {
             let word = word_of(slot);
             RecipeError::OutOfRange(format!(
-                "{needs} `{word}`, the {}: write it here, or declare an assumption for it under `defaults: {word}` in \
+                "{needs} `{word}`, the {}: write it beside what needs it, or declare an assumption for it under `defaults: {word}` in \
                  {ASSUMPTIONS}",
                 slot.about()
             ))

@@ -11,6 +11,7 @@ use super::beam::{self, Beam, FarEnd, Mode};
 use super::kind::{Field, Form, Kind};
 use super::model::{Matrices, Model, Point, unit};
 use super::polynomial;
+use crate::text::words::counted;
 
 const BASES: &[&str] = &["polynomial", "exact"];
 
@@ -105,8 +106,8 @@ impl Model for CantileverBeam {
 
     fn describe(&self) -> String {
         let modes = match &self.basis {
-            Basis::Polynomial(modes) => format!("{} modes of polynomials", modes.len()),
-            Basis::Exact(modes) => format!("{} exact modes", modes.len()),
+            Basis::Polynomial(modes) => counted(modes.len(), "mode of polynomials", "modes of polynomials"),
+            Basis::Exact(modes) => counted(modes.len(), "exact mode", "exact modes"),
         };
         self.beam.describe("cantilever", &modes)
     }

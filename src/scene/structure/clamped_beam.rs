@@ -7,6 +7,7 @@
 use super::beam::{self, Beam, FarEnd, Mode};
 use super::kind::Kind;
 use super::model::{Matrices, Model, Point, unit};
+use crate::text::words::counted;
 
 /// A clamped beam in its own modes.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,6 +69,6 @@ impl Model for ClampedBeam {
     }
 
     fn describe(&self) -> String {
-        self.beam.describe("beam clamped at both ends", &format!("{} exact modes", self.modes.len()))
+        self.beam.describe("beam clamped at both ends", &counted(self.modes.len(), "exact mode", "exact modes"))
     }
 }
