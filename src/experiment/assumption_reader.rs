@@ -175,9 +175,6 @@ pub(super) fn read_entry(at: At<'_>, place: Place) -> Option<AssumptionEntry> {
     let reason = keys.required("reason", "Why this value", |at| at.text());
     let other = |node: &Node, findings: &Findings| {
         let other = value(node, findings)?;
-        if in_force.as_ref() == Some(&other) {
-            return findings.wrong(node.span, "the value in force itself: a move there changes nothing");
-        }
         in_force.as_ref().is_none_or(|one| alike(one, &other, node, findings)).then_some(other)
     };
     let range = keys.optional("range", "Other values that could be defended", |at| {
