@@ -96,7 +96,6 @@ impl QuantityError {
             Self::NoUnit(_, wanted)
             | Self::WrongKind { wanted, .. }
             | Self::UnknownUnit { wanted: Some(wanted), .. } => Some(format!("write for example {}", wanted.example())),
-            Self::NotFinite(text) if text == "infinite" => Some("for no ceiling write `gap_ratio: infinite`".into()),
             Self::NotDimensionless(_) | Self::UnknownUnit { wanted: None, .. } => Some("write the number alone".into()),
             Self::NotIn { unit, .. } => Some(format!("write the number alone, in {unit}, or with a unit of that kind")),
             Self::WhichFrequency(_) => Some("write the number alone, in the unit of its column".into()),

@@ -255,6 +255,10 @@ impl SceneReader<'_> {
         if key == "gap" && self.is_swept(at, Parameter::Gap) {
             return Some(GapRecipe::Gap(Given::Stated(PLACEHOLDER)));
         }
+        let is_endless = |value: &Value| matches!(value, Value::Scalar(text) if text == "infinite");
+        if key == "gap" && matches!(at, At::Node(node, _) if is_endless(&node.value)) {
+            return at.report("`infinite` is no length", Some("write `gap_ratio: infinite`".into()));
+        }
         let is_list = |value: &Value| matches!(value, Value::Sequence(_));
         if key != "gap" {
             let each = |at: At<'_>| at.list(|at| at.ratio()).map(GapRecipe::Ratios);

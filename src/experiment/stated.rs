@@ -129,7 +129,7 @@ pub(super) fn without_source(
         let key = input.name();
         let others = statements().filter(|statement| statement.speaks_of(&input));
         let others = others.map(|statement| format!("{}: {}", statement.place, statement.text)).collect();
-        match listed.iter_mut().find(|(known, ..)| *known == key) {
+        match listed.iter_mut().find(|(known, _, same)| *known == key && *same == others) {
             Some((_, texts, _)) if texts.contains(&input.text) => {}
             Some((_, texts, _)) => texts.push(input.text),
             None => listed.push((key, vec![input.text], others)),

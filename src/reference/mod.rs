@@ -40,6 +40,7 @@ mod view;
 mod words;
 
 pub use accept::{AcceptError, accept};
+pub(crate) use compare::COVERAGE;
 pub use entry::{Check, Entry, NotJudged, Reading, ReferenceFile, Tolerance, ToleranceSize};
 pub use entry_reader::{load_reference, parse_reference, reference_schema};
 pub use extraction::Extraction;

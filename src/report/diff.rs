@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::movement::{COVERAGE, Moved, Movement};
+use super::movement::{Moved, Movement};
+use crate::reference::COVERAGE;
 use crate::text::number::{quantity, signed, significant};
 use crate::text::words::counted;
 
@@ -32,7 +33,7 @@ pub fn diff(movements: &[(String, Movement)], whole: &[String], not_run: &[Strin
         text += &list("judged differently", &movement.judged_differently, description, |(name, a, b)| {
             format!("{name}: {a} -> {b}")
         });
-        text += &list("the same verdict on other numbers", &movement.read_differently, description, |(name, a, b)| {
+        text += &list("the same verdict, found otherwise", &movement.read_differently, description, |(name, a, b)| {
             format!("{name}: {a} -> {b}")
         });
         text += &list("beyond their uncertainty", &beyond, description, |moved| line(moved));

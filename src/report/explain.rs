@@ -1,7 +1,7 @@
 //! What an entry depends on: how far each assumption, moved alone, shifts what came out, and which move would change its verdict.
 
 use crate::experiment::{AssumptionName, AssumptionValue, value_in_words};
-use crate::reference::{Judged, Moved, Printed, Role, Verdict};
+use crate::reference::{Judged, Moved, NoTable, Printed, Role, Verdict, WhyNoTable};
 use crate::text::number;
 
 use super::markdown::one_line;
@@ -59,11 +59,10 @@ pub fn explain(view: &EntryView<'_>) -> String {
         text += &format!("  {:<10} {} chosen by it{also}\n", "fitted", names(&view.chosen_by));
     }
     if view.moves.is_empty() {
-        let unknown = judged.no_table.is_some();
-        text += if unknown {
-            "\nMoves stand in the table that is missing.\n"
-        } else {
-            "\nNo assumption was moved for it.\n"
+        text += &match &judged.no_table {
+            Some(NoTable { why: WhyNoTable::NoExperiment, .. }) => String::new(),
+            Some(NoTable { experiment, .. }) => format!("\nWhat moves it is known once `{experiment}` has been run.\n"),
+            None => "\nNo assumption was moved for it.\n".into(),
         };
     } else {
         text += "\nOne assumption moved at a time, the most telling first\n";
@@ -76,7 +75,7 @@ pub fn explain(view: &EntryView<'_>) -> String {
         text += &rows(view);
         text += &format!("\n{}", turns(view));
     }
-    if !view.unmoved.is_empty() {
+    if !view.unmoved.is_empty() && judged.no_table.is_none() {
         text += &format!(
             "\nIts experiment also depends on these, which were not moved: {}.\n\
              `shotdamp explain --run {}` moves those that have other values.\n",

@@ -86,7 +86,7 @@ pub(super) fn lines(one: &Judged) -> Vec<(&'static str, String)> {
 }
 
 /// The command that computes the entry's experiment anew, and nothing else; where another table is not there, that one's. Empty where
-/// no run makes up for what is missing.
+/// there is no experiment to be run.
 pub(super) fn rerun(one: &Judged) -> String {
     match &one.no_table {
         Some(NoTable { why: WhyNoTable::NoExperiment, .. }) => String::new(),
@@ -94,7 +94,8 @@ pub(super) fn rerun(one: &Judged) -> String {
             format!("shotdamp run {experiment}")
         }
         Some(NoTable { experiment, .. }) => format!("shotdamp run --force {experiment}"),
-        None if one.verdict == Verdict::Missing => String::new(),
+        // Forced, a run could only do again what it has done; a plain one tries a failed row again.
+        None if one.verdict == Verdict::Missing => format!("shotdamp run {}", one.experiment),
         None => format!("shotdamp run --force {}", one.experiment),
     }
 }

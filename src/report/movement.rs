@@ -2,15 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use crate::reference::Judged;
+use crate::reference::{COVERAGE, Judged};
 use crate::table::{Data, Table};
 use crate::text::number::compact;
 use crate::text::words;
 
 use super::json::{Number, Standing};
-
-/// Coverage factor, as in a comparison with the study.
-pub(super) const COVERAGE: f64 = 2.0;
 
 /// A number that is not the same any more.
 #[derive(Debug, Clone, PartialEq)]

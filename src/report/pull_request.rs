@@ -18,10 +18,12 @@ pub fn pull_request(view: &CheckView<'_>, committed: &[Standing]) -> String {
     let before: Vec<Standing> = committed.iter().filter(|one| checked(&one.id)).cloned().collect();
     let movement = between_verdicts(&before, &now);
     let mut pieces: Vec<String> = Vec::new();
-    for (id, old, new) in movement.judged_differently.iter().chain(&movement.read_differently) {
+    for (id, old, new) in &movement.judged_differently {
         let found = now.iter().find(|one| one.id == *id).map_or("", |one| one.found.as_str());
-        let found = if found == new { String::new() } else { format!("; {}", escaped(&one_line(found))) };
-        pieces.push(format!("- `{id}`: {} → **{}**{found}\n", escaped(&one_line(old)), escaped(&one_line(new))));
+        pieces.push(format!("- `{id}`: {old} → **{new}**; {}\n", escaped(&one_line(found))));
+    }
+    for (id, old, new) in &movement.read_differently {
+        pieces.push(format!("- `{id}`: the same verdict, {} → {}\n", escaped(&one_line(old)), escaped(&one_line(new))));
     }
     pieces.extend(movement.new.iter().map(|id| format!("- `{id}`: new\n")));
     pieces.extend(movement.gone.iter().map(|id| format!("- `{id}`: removed\n")));

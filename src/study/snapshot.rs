@@ -60,6 +60,8 @@ struct OnDisk {
     program: Program,
     study: Seen<Assumed>,
     unused: BTreeSet<AssumptionName>,
+    /// Experiments and references that there were, whether they are up to date or not.
+    listed: BTreeSet<String>,
     experiments: BTreeMap<String, Seen<Summary>>,
 }
 
@@ -128,7 +130,7 @@ impl Snapshot {
         let unchanged = shared == known.study.inputs;
         let texts = texts_by_experiment(texts);
         // The index has a line for an experiment that was deleted since then.
-        let all_there = known.experiments.keys().all(|id| texts.contains_key(id.as_str()));
+        let all_there = known.listed.iter().all(|id| texts.contains_key(id.as_str()));
         let index_is_current = unchanged && all_there && look.holds(&mut known.study.outputs);
         let mut used = Used::new();
         known.experiments.retain(|id, seen| {
@@ -209,7 +211,8 @@ impl Snapshot {
         // What uses nothing is known once every experiment is.
         let all_known = texts.ids().iter().all(|id| experiments.contains_key(*id));
         let unused = sheet.iter().map(|(name, _)| name).filter(|name| all_known && !is_used(name)).cloned().collect();
-        OnDisk { program: Program::here(), study, unused, experiments }.write(&path)
+        let listed = texts_by_experiment(texts).into_keys().map(str::to_owned).collect();
+        OnDisk { program: Program::here(), study, unused, listed, experiments }.write(&path)
     }
 }
 

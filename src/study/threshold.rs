@@ -43,7 +43,9 @@ pub fn thresholds(experiment: &Experiment, assumptions: &Assumptions) -> Vec<Thr
         for &threshold in Threshold::ALL {
             let at = strongest.and_then(|case| place(experiment, assumptions, threshold, case, over).ok()?);
             let Some(at) = at else { continue };
-            let is_below = |case: &&usize| experiment.cases[**case].number(over).is_some_and(|x| x.abs() < at.abs());
+            let is_below = |case: &&usize| {
+                experiment.cases[**case].number(over).is_some_and(|x| x * at >= 0.0 && x.abs() < at.abs())
+            };
             let below = cases.iter().filter(is_below).count();
             match found.iter_mut().find(|known| (known.threshold, known.over) == (threshold, over)) {
                 Some(known) => {
