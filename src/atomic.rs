@@ -8,7 +8,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// How a neighbour's name begins.
-const PREFIX: &str = ".shotdamp-";
+pub(crate) const PREFIX: &str = ".shotdamp-";
 /// Links that are followed one after the other; more lead in a circle.
 const LINKS: u32 = 40;
 
@@ -86,7 +86,8 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
 /// # Errors
 /// [`FileError`] with the system's reason.
 pub fn check_writable(path: &Path) -> Result<(), FileError> {
-    let folder = path.ancestors().skip(1).find(|folder| folder.exists()).unwrap_or(Path::new("."));
+    let place = place_of(path);
+    let folder = place.ancestors().skip(1).find(|folder| folder.exists()).unwrap_or(Path::new("."));
     let probe = tempfile::Builder::new().prefix(PREFIX).tempfile_in(folder);
     probe.map(drop).map_err(|source| FileError::new("write", path, source))
 }

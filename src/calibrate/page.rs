@@ -10,7 +10,6 @@ use crate::reference::{Found, Verdict};
 use crate::text::number;
 
 use crate::report::markdown::{Align, MarkdownTable};
-use crate::report::tally::word;
 use crate::text::words::counted;
 
 /// The page.
@@ -243,7 +242,7 @@ fn entries(title: &str, list: &[Compared]) -> String {
             Found::Number { published, .. } => number::compact(*published, 5),
             _ => String::new(),
         };
-        let verdict = |read: &Read| word(read.verdict).to_owned();
+        let verdict = |read: &Read| read.verdict.word().to_owned();
         table.row([
             format!("`{}`", one.id),
             study,

@@ -461,7 +461,8 @@ Examples:
   shotdamp clean --orphans
   shotdamp clean --earlier                    free disk space; going back to earlier inputs then re-simulates")]
 pub(super) struct CleanArgs {
-    /// Remove tables, records, figures and pages of experiments and calibrations whose files no longer exist
+    /// Remove tables, records, figures and pages of experiments and calibrations whose files no longer exist, and every other .md, .png
+    /// and .svg below reports/ that no run writes
     #[arg(long, group = "what")]
     pub orphans: bool,
     /// Remove earlier tables, which are kept so that going back to earlier inputs simulates nothing

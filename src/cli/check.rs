@@ -145,7 +145,6 @@ fn accept(study: &Study, judgement: &Judgement, id: &str, reason: &str) -> Resul
     let text = String::from_utf8_lossy(bytes);
     let changed = reference::accept(reference, &text, judged, reason)?;
     atomic::write(&study.layout.path(name), changed.as_bytes())?;
-    let verdict = |verdict| crate::text::words::of_key(verdict);
-    print(&format!("{name}: {id} expects {} now, was {}\n", verdict(&judged.verdict), verdict(&judged.expected)))?;
+    print(&format!("{name}: {id} expects {} now, was {}\n", judged.verdict.word(), judged.expected.word()))?;
     Ok(Exit::AsExpected)
 }

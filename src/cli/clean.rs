@@ -12,6 +12,7 @@ use super::simulate::held;
 use crate::atomic::FileError;
 use crate::report::{extra_files, judge_all};
 use crate::study::{Layout, Lock, earlier_tables, orphans};
+use crate::text::words::counted;
 
 /// Removes files of deleted experiments, and earlier tables.
 pub(super) fn clean(layout: &Layout, args: &CleanArgs) -> Result<Exit, CliError> {
@@ -39,6 +40,6 @@ pub(super) fn clean(layout: &Layout, args: &CleanArgs) -> Result<Exit, CliError>
         text += &format!("{name}\n");
     }
     let done = if args.dry_run { "would be removed" } else { "removed" };
-    print(&format!("{text}{} files {done}\n", names.len()))?;
+    print(&format!("{text}{} {done}\n", counted(names.len(), "file", "files")))?;
     Ok(Exit::AsExpected)
 }

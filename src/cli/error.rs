@@ -14,8 +14,10 @@ use crate::study::{LockError, RunError};
 pub(super) enum CliError {
     #[error("there is no study here: no folder `experiments` in {} or above it; make that folder to begin a study, or name a study with --root", from_here(.0))]
     NoStudy(PathBuf),
-    #[error("there is no study in {}: it has no folder `experiments`", from_here(.0))]
+    #[error("there is no study in {}: it has no folder `experiments`; make that folder to begin a study there", from_here(.0))]
     NoStudyAt(PathBuf),
+    #[error("the current folder cannot be found: {0}; change to one that exists, or name a study with --root")]
+    Here(#[source] io::Error),
     #[error("there are no experiments yet: write one into experiments/")]
     NoExperiments,
     #[error("no experiment matches `{pattern}`; {hint}")]
@@ -44,7 +46,7 @@ pub(super) enum CliError {
     Own { path: String, part: &'static str },
     #[error("only one document can go to standard output: name a file for the others")]
     TwoDocuments,
-    #[error("there is an experiment `{0}` already")]
+    #[error("there is an experiment `{0}` already; choose another id")]
     Exists(String),
     #[error("experiments/assumptions.yaml holds the assumptions of all experiments: name this one otherwise")]
     OfAssumptions,

@@ -94,8 +94,9 @@ fn outlives_terminal() -> bool {
 pub(super) fn listen(kept: Kept) {
     let _ = KEPT.set(kept);
     let asked = Arc::new(AtomicBool::new(false));
-    let heard = signals().into_iter().filter(|signal| signal_hook::flag::register(*signal, Arc::clone(&asked)).is_ok());
-    if heard.count() == 0 {
+    let registered =
+        signals().into_iter().filter(|signal| signal_hook::flag::register(*signal, Arc::clone(&asked)).is_ok());
+    if registered.count() == 0 {
         // The system goes on ending the process by itself.
         return;
     }

@@ -17,7 +17,7 @@ pub(super) fn layout(root: Option<&Path>) -> Result<Layout, CliError> {
         let layout = Layout::new(root);
         return if layout.path("experiments").is_dir() { Ok(layout) } else { Err(CliError::NoStudyAt(root.into())) };
     }
-    let here = std::env::current_dir()?;
+    let here = std::env::current_dir().map_err(CliError::Here)?;
     Layout::find(&here).ok_or(CliError::NoStudy(here))
 }
 

@@ -7,6 +7,7 @@ use super::output::{print, print_error, print_unread};
 use super::select::{choose, open};
 use super::simulate::{How, Ran, held, simulate};
 use crate::study::{Item, Layout, Lock, Shard, State};
+use crate::text::words::counted;
 
 /// Simulates the shard's part of what is stale, and writes nothing but its own tables: no verdicts, figures or reports.
 ///
@@ -21,11 +22,12 @@ pub(super) fn run_shard(layout: &Layout, args: &RunArgs, shard: Shard, common: &
     let part: Vec<&Item> = chosen.items.iter().copied().filter(stale).filter(|item| shard.has_part_of(item)).collect();
     let todo: Vec<&Item> = part.iter().copied().filter(|item| args.force || !shard.has_done(layout, item)).collect();
     let how = How { threads: common.threads(), quiet: common.quiet, shard: Some(shard), from_scratch: args.force };
-    let Ran { unsaved, .. } = simulate(layout, &todo, how, |item, finished| shard.save(layout, item, finished))?;
+    let Ran { unsaved, restored } = simulate(layout, &todo, how, |item, finished| shard.save(layout, item, finished))?;
     for problem in &unsaved {
         print_error(&format!("error: {problem}\n"));
     }
-    let (parts, done) = (part.len(), todo.len() - unsaved.len());
-    print(&format!("shard {shard}: has part of {parts} stale experiments; {done} simulated.\n"))?;
+    let parts = counted(part.len(), "stale experiment", "stale experiments");
+    let done = todo.len().saturating_sub(unsaved.len() + restored);
+    print(&format!("shard {shard}: has part of {parts}; {done} simulated.\n"))?;
     Ok(if unsaved.is_empty() && chosen.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })
 }

@@ -149,8 +149,8 @@ fn make(layout: &Layout, id: &str, made: &Sender<Made>) -> Result<Exit, CliError
     if !ids.is_empty() && !ids.iter().any(|known| matches(id, known)) {
         return Err(no_match(id, &ids));
     }
-    let hear = |one: &Untried<'_>| drop(made.send(Made::Untried(untried(one))));
-    let study = Study::of(layout.clone(), texts, &|stem| matches(id, stem), &hear);
+    let on_untried = |one: &Untried<'_>| drop(made.send(Made::Untried(untried(one))));
+    let study = Study::of(layout.clone(), texts, &|stem| matches(id, stem), &on_untried);
     let chosen = choose(&study, &Choice { patterns: vec![id.into()], folder: None })?;
     print_unread(chosen.unread.iter().copied());
     let experiments = u32::try_from(chosen.items.len()).unwrap_or(u32::MAX);

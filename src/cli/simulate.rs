@@ -64,6 +64,10 @@ pub(super) fn simulate(
     let journals: Vec<PathBuf> = items.iter().map(journal).collect();
     let known: Vec<KnownRows> = if how.from_scratch {
         items.iter().for_each(|item| Spent::forget(layout, &item.source.experiment.id));
+        // What an interrupted search has evaluated; there is none of others.
+        journals.iter().for_each(|journal| {
+            let _ = std::fs::remove_file(journal);
+        });
         items.iter().map(|_| KnownRows::nothing()).collect()
     } else {
         items.par_iter().map(|item| KnownRows::of(layout, item)).collect()

@@ -10,6 +10,7 @@ use super::exit::Exit;
 use super::output::{print, print_error, print_progress, print_unread, print_warnings};
 use super::select::{Chosen, Found, choose, matched};
 use super::simulate::{How, Ran, held, print_failures, simulate};
+use crate::atomic::{check_writable, from_here};
 use crate::report::{INDEX, Judgement, Published, doubts, judge_all, publish, report_of, summary_of};
 use crate::study::{Item, Layout, Lock, RunTimes, STUDY, Snapshot, State, Study, before_run, remove_journals, save};
 use crate::text::words::counted;
@@ -20,7 +21,9 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     if !args.force && !args.tables && !args.times && !args.verify {
         // Without lock, YAML, table or thread.
         if let Some(ids) = matched(&found, &args.choice) {
-            found.snapshot.settle(layout);
+            if !args.dry_run {
+                found.snapshot.settle(layout);
+            }
             print_warnings(found.snapshot.warnings(&found.texts).as_ref());
             return nothing_to_do(layout, &found.snapshot, &ids);
         }
@@ -47,6 +50,10 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
                 print_progress(&format!("warning: {}: {warning}\n", experiment.id));
             }
         }
+    }
+    // Before the simulations, which may take hours, and not after them.
+    for item in todo.iter().filter(|_| !args.tables) {
+        check_writable(&layout.path(&report_of(item.source.folder(), &item.source.experiment.id.0)))?;
     }
     if common.command.is_none() && !todo.is_empty() {
         print_progress(&announcement(&study, todo.len()));
@@ -110,9 +117,8 @@ fn page_to_open<'a>(
         Some(index) if ids.len() > 1 => vec![index.to_owned()],
         _ => own.collect(),
     };
-    let here = std::env::current_dir().unwrap_or_default();
     let paths: Vec<_> = names.iter().map(|name| layout.path(name)).filter(|path| path.is_file()).collect();
-    let shown = |path: &PathBuf| format!("Result: {}\n", path.strip_prefix(&here).unwrap_or(path).display());
+    let shown = |path: &PathBuf| format!("Result: {}\n", from_here(path));
     let mut text: String = paths.iter().take(NAMED).map(shown).collect();
     if paths.len() > NAMED {
         text += &format!("And {} in reports/.\n", counted(paths.len() - NAMED, "more page", "more pages"));

@@ -192,6 +192,12 @@ pub struct Moved {
 }
 
 impl AssumptionEntry {
+    /// Its range has values beside the one in force.
+    #[must_use]
+    pub fn has_range(&self) -> bool {
+        self.moves().next().is_some()
+    }
+
     /// The other values of its range, each as it is named in the label of a variant.
     fn moves(&self) -> impl Iterator<Item = (String, &AssumptionValue)> {
         self.range.iter().filter(|value| **value != self.value).enumerate().map(|(index, value)| {

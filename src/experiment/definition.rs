@@ -18,6 +18,7 @@ use super::optimise::Optimise;
 use super::range::rounded;
 use super::refined::Refinement;
 use super::starts::Starts;
+use super::stated::Unsourced;
 use super::word::word_of;
 
 /// Id of an experiment: its file name without ending, `ch3-limit-stop`; lower-case letters, digits and hyphens.
@@ -127,9 +128,9 @@ pub struct Experiment {
     pub tolerances: Vec<Tolerance>,
     /// The figures; never part of what makes a simulation stale.
     pub figures: Vec<FigureSpec>,
-    /// Inputs that neither the text of the study nor an assumption gives, `key value`; none where no text is stated.
+    /// Inputs that neither the text of the study nor an assumption gives; none where no text is stated.
     #[serde(skip)]
-    pub without_source: Vec<String>,
+    pub without_source: Vec<Unsourced>,
 }
 
 impl Experiment {

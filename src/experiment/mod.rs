@@ -99,6 +99,7 @@ pub use scaffold::{scaffold, structures};
 pub use schema::assumptions_schema;
 pub(crate) use schema::{described, words_of};
 pub use starts::{BasinColumn, HeightBox, Interval, ParticleBox, Rank, START_LISTS, Starts};
+pub use stated::Unsourced;
 pub(crate) use validate::{Cases, parse_with};
 pub use validate::{experiment_schema, parse_experiment};
 pub(crate) use word::did_you_mean;

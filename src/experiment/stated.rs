@@ -12,6 +12,7 @@
 //! Grids (`linear`, `log`, …) are chosen for drawing and are no inputs. Where nothing is stated, nothing is listed.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use serde_json::json;
 
@@ -41,6 +42,22 @@ pub(super) struct Statement {
     /// The table, figure or section.
     place: String,
     span: Span,
+}
+
+/// An input without a source.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Unsourced {
+    /// `key value`.
+    pub input: String,
+    /// Other values that the text states for such a key: `Table 2: 3.5 mm`.
+    pub stated: Vec<String>,
+}
+
+impl fmt::Display for Unsourced {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.input)?;
+        if self.stated.is_empty() { Ok(()) } else { write!(f, " ({})", self.stated.join("; ")) }
+    }
 }
 
 /// An input of an experiment.
@@ -106,14 +123,14 @@ pub(super) fn read_statements(at: At<'_>) -> Option<Vec<Statement>> {
     at.by_name(json!({}), form, place).map(|statements| statements.concat())
 }
 
-/// The inputs of an experiment that neither the study's statements for its chapter nor its own give, `key value`, with another value that
-/// one of these states for such a key, `key value (Table 2: other)`; none if nothing is stated. A statement of its own that gives none of its inputs is reported.
+/// The inputs of an experiment that neither the study's statements for its chapter nor its own give; none if nothing is stated. A statement
+/// of its own that gives none of its inputs is reported.
 pub(super) fn without_source(
     root: &Node,
     of_chapter: &[Statement],
     own: &[Statement],
     findings: &Findings,
-) -> Vec<String> {
+) -> Vec<Unsourced> {
     if of_chapter.is_empty() && own.is_empty() {
         return Vec::new();
     }
@@ -135,11 +152,8 @@ pub(super) fn without_source(
             None => listed.push((key, vec![input.text], others)),
         }
     }
-    let line = |(key, texts, others): (String, Vec<String>, Vec<String>)| {
-        let others = if others.is_empty() { String::new() } else { format!(" ({})", others.join("; ")) };
-        format!("{key} {}{others}", texts.join(", "))
-    };
-    listed.into_iter().map(line).collect()
+    let all = listed.into_iter();
+    all.map(|(key, texts, stated)| Unsourced { input: format!("{key} {}", texts.join(", ")), stated }).collect()
 }
 
 /// Parts of an experiment with inputs, and which of their keys are meant; all where none is named.

@@ -288,7 +288,7 @@ impl<'t> ExperimentReader<'t> {
             Cases::Tried => return Some(experiment),
             // What is shown of an experiment with mistakes is the mistakes.
             Cases::ToTry(_) if self.findings.any() => {}
-            Cases::ToTry(hear) => hear(&experiment),
+            Cases::ToTry(on_untried) => on_untried(&experiment),
         }
         let parts = scene.parts;
         checks.scenes(&experiment, |parameter, part| {

@@ -15,7 +15,8 @@
 //! where the unstated inputs make most of the width, `undecidable` where the chaotic spread or the grid does.
 //!
 //! An entry that an assumption was fitted to is `fitted` where it agrees and |E| ≤ W: the range of a fitted input says
-//! nothing about how well the fit went. A tolerance set by hand takes the place of 2 u_val and of W.
+//! nothing about how well the fit went. A tolerance set by hand takes the place of 2 u_val; of the condition it leaves
+//! 2 · spread ≤ the larger of it and W: who sets it answers for u_input.
 
 use super::verdict::{Comparison, Verdict};
 

@@ -176,10 +176,12 @@ fn numbers(view: &View<'_>, peak: &PrintedPeak, by_hand: Option<&Tolerance>, fit
             (name, judgement.unwrap_or_else(|absence| Judgement::missing(&absence)))
         })
         .collect();
-    let verdict = judged.iter().map(|(_, judgement)| judgement.verdict).max_by_key(|verdict| severity(*verdict));
+    let verdict = judged.iter().map(|(_, judgement)| judgement.verdict).max_by_key(|verdict| verdict.severity());
     // An assumption moved that turns one of the numbers turns the entry; which ones it turns is not kept, so at best the
-    // smallest count is.
-    let robust = judged.iter().filter_map(|(_, judgement)| judgement.robust).min();
+    // smallest share is.
+    let share = |&(kept, run): &(u32, u32)| f64::from(kept) / f64::from(run);
+    let robust =
+        judged.iter().filter_map(|(_, judgement)| judgement.robust).min_by(|a, b| share(a).total_cmp(&share(b)));
     let found: Vec<String> = judged.iter().map(|(name, judgement)| format!("{name} {}", judgement.found)).collect();
     let blocked_by: BTreeSet<String> =
         judged.iter().flat_map(|(_, judgement)| judgement.blocked_by.iter().cloned()).collect();
@@ -199,18 +201,6 @@ fn numbers(view: &View<'_>, peak: &PrintedPeak, by_hand: Option<&Tolerance>, fit
         blocked_by: blocked_by.into_iter().collect(),
         robust,
         ..Judgement::of(verdict.unwrap_or(Verdict::Missing))
-    }
-}
-
-/// How bad a verdict is among several.
-fn severity(verdict: Verdict) -> u8 {
-    match verdict {
-        Verdict::Reproduced => 0,
-        Verdict::Fitted => 1,
-        Verdict::Undecidable => 2,
-        Verdict::Blocked => 3,
-        Verdict::Differs => 4,
-        Verdict::Missing => 5,
     }
 }
 

@@ -26,6 +26,33 @@ pub enum Verdict {
     Missing,
 }
 
+impl Verdict {
+    /// As YAML and every report call it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Reproduced => "reproduced",
+            Self::Fitted => "fitted",
+            Self::Differs => "differs",
+            Self::Undecidable => "undecidable",
+            Self::Blocked => "blocked",
+            Self::Missing => "missing",
+        }
+    }
+
+    /// How bad it is among several.
+    pub(crate) fn severity(self) -> u8 {
+        match self {
+            Self::Reproduced => 0,
+            Self::Fitted => 1,
+            Self::Undecidable => 2,
+            Self::Blocked => 3,
+            Self::Differs => 4,
+            Self::Missing => 5,
+        }
+    }
+}
+
 /// A value held against the published one, after ASME V&V 20.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {

@@ -1,9 +1,11 @@
 //! Assumptions in words.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::markdown::{Align, MarkdownTable, details, one_line};
+use super::run::joined;
 use super::view::AssumptionView;
+use crate::experiment::{AssumptionName, Unsourced};
 
 /// The assumptions on an experiment's page: their values, and where their reasons stand.
 pub(super) fn links(assumptions: &[AssumptionView], to_reports: &str) -> String {
@@ -15,20 +17,32 @@ pub(super) fn links(assumptions: &[AssumptionView], to_reports: &str) -> String 
     assumptions.iter().map(link).collect::<Vec<_>>().join(" · ") + "\n\n"
 }
 
+/// Those that have other values and are not among the `moved`: u_input leaves them out.
+pub(super) fn not_moved(assumptions: &[AssumptionView], moved: &BTreeSet<AssumptionName>) -> String {
+    let is_left = |one: &&AssumptionView| one.has_range && !moved.iter().any(|name| name.to_string() == one.name);
+    let left: Vec<String> = assumptions.iter().filter(is_left).map(|one| format!("`{}`", one.name)).collect();
+    match left.len() {
+        0 => String::new(),
+        many => {
+            let have = if many == 1 { "has" } else { "have" };
+            format!("Of these {} {have} other values that were not tried here.\n\n", joined(&left))
+        }
+    }
+}
+
 /// The inputs on an experiment's page that neither the text of the study nor an assumption gives.
-pub(super) fn without_source(inputs: &[String]) -> String {
+pub(super) fn without_source(inputs: &[Unsourced]) -> String {
     if inputs.is_empty() {
         return String::new();
     }
-    let inputs: Vec<String> = inputs.iter().map(|input| format!("`{input}`")).collect();
-    let others = if inputs.iter().any(|input| input.ends_with(")`")) {
+    let others = if inputs.iter().any(|one| !one.stated.is_empty()) {
         " (in brackets another value that the text does state)"
     } else {
         ""
     };
     format!(
         "Neither stated in the text of the study nor declared as an assumption{others}: {}.\n\n",
-        inputs.join(" · ")
+        inputs.iter().map(|one| format!("`{one}`")).collect::<Vec<_>>().join(" · ")
     )
 }
 

@@ -89,12 +89,8 @@ pub fn departures(study: &Study, judgement: &Judgement, only: Option<&BTreeSet<&
     let extra = match only {
         None => extra(study, &expected.into_keys().collect()),
         Some(_) => {
-            let ids = study.texts.ids();
             let mut extra = extra(study, &rendered(study, judgement));
-            // The longest id that a name begins with is that of its experiment.
-            let owner =
-                |file: &str| ids.iter().copied().filter(|id| stem(file).starts_with(id)).max_by_key(|id| id.len());
-            extra.retain(|file| owner(file).is_some_and(is_asked_for));
+            extra.retain(|file| owner(study, file).is_some_and(is_asked_for));
             extra
         }
     };
@@ -123,14 +119,17 @@ pub(super) fn present(study: &Study) -> BTreeSet<String> {
 fn extra(study: &Study, expected: &BTreeSet<String>) -> BTreeSet<String> {
     let mut present = present(study);
     // Whose table is out of date, or whose file cannot be read, has pages that cannot be told from those of an experiment that is gone.
-    let mut unmade = study.texts.ids();
-    for item in study.items.iter().filter(|item| item.record().is_some()) {
-        unmade.remove(item.source.experiment.id.0.as_str());
-    }
-    let unmade = |file: &str| unmade.iter().any(|id| stem(file).starts_with(id));
+    let made = study.items.iter().filter(|item| item.record().is_some());
+    let made: BTreeSet<&str> = made.map(|item| item.source.experiment.id.0.as_str()).collect();
+    let unmade = |file: &str| owner(study, file).is_some_and(|id| !made.contains(id));
     let otherwise = |file: &str| file.strip_prefix("reports/").is_some_and(is_written_otherwise);
     present.retain(|file| !expected.contains(file) && !unmade(file) && !otherwise(file));
     present
+}
+
+/// Whose file it is: the longest id that its name begins with.
+fn owner<'a>(study: &'a Study, file: &str) -> Option<&'a str> {
+    study.texts.ids().into_iter().filter(|id| stem(file).starts_with(id)).max_by_key(|id| id.len())
 }
 
 /// A few experiments by their ids, of many the number.
@@ -178,7 +177,7 @@ fn walk(folder: &Path, name: &str, depth: u32, found: &mut BTreeSet<String>) {
             continue;
         }
         let name = format!("{name}/{file_name}");
-        let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
+        let is_folder = entry.path().is_dir();
         if is_folder && depth > 0 {
             walk(&entry.path(), &name, depth - 1, found);
         } else if !is_folder {

@@ -2,6 +2,7 @@
 
 use crate::reference::{Comparison, Judged, MotionBehind, Moved, Price, PrintedUnit, Role, Verdict};
 use crate::text::number::{compact, signed, significant};
+use std::cmp::Reverse;
 
 use super::markdown::{Align, MarkdownTable, first_sentence, one_line};
 use super::motions::by_count;
@@ -10,13 +11,10 @@ use crate::text::words::counted;
 
 /// The entry that a page leads with: the worst, and of several the first.
 pub(super) fn lead<'a>(judged: impl IntoIterator<Item = &'a Judged>) -> Option<&'a Judged> {
-    let rank = |one: &&Judged| match one.verdict {
-        Verdict::Missing => 0,
-        Verdict::Differs => 1,
-        Verdict::Blocked => 2,
-        Verdict::Undecidable => 3,
-        Verdict::Reproduced => 4,
-        Verdict::Fitted => 5,
+    // Of those that agree a fitted one proves nothing.
+    let rank = |one: &&Judged| {
+        let severity = if agrees(one.verdict) { 0 } else { one.verdict.severity() };
+        (Reverse(severity), one.verdict == Verdict::Fitted)
     };
     judged.into_iter().min_by_key(rank)
 }

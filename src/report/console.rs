@@ -6,7 +6,7 @@ use crate::reference::{Judged, Verdict};
 
 use super::finding;
 use super::markdown::one_line;
-use super::tally::{Tally, VERDICTS, word};
+use super::tally::{Tally, VERDICTS};
 use crate::text::words::counted;
 
 /// Up to so many experiments are shown one by one; of more only those with a verdict that is not as expected.
@@ -26,7 +26,7 @@ pub fn summary<N: AsRef<str>>(experiments: &[(N, &[Judged])]) -> String {
     } else if !known.is_empty() {
         text += "\nNot reproduced, as expected:\n";
         for one in known {
-            text += &format!("  {:<11} {}: {}\n", word(one.verdict), one.id, one_line(&one.found));
+            text += &format!("  {:<11} {}: {}\n", one.verdict.word(), one.id, one_line(&one.found));
         }
     }
     let unexpected: Vec<&Judged> = judged().filter(|one| !one.as_expected()).collect();
@@ -55,7 +55,7 @@ pub fn summary<N: AsRef<str>>(experiments: &[(N, &[Judged])]) -> String {
 fn table<N: AsRef<str>>(experiments: &[(N, &[Judged])]) -> Table {
     let mut table = Table::new();
     table.load_style(TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'))).force_no_tty();
-    let heads = ["experiment".to_owned()].into_iter().chain(VERDICTS.map(|verdict| word(verdict).to_owned()));
+    let heads = ["experiment".to_owned()].into_iter().chain(VERDICTS.map(|verdict| verdict.word().to_owned()));
     table.set_header(heads.collect::<Vec<_>>());
     let surprises = |judged: &[Judged]| judged.iter().any(|one| !one.as_expected());
     for (name, judged) in experiments.iter().filter(|(_, judged)| experiments.len() <= SHOWN || surprises(judged)) {
@@ -76,7 +76,7 @@ fn row(name: &str, tally: &Tally) -> Vec<String> {
 }
 
 fn in_full(one: &Judged) -> String {
-    let mut text = format!("  {}: {}, expected {}\n", one.id, word(one.verdict), word(one.expected));
+    let mut text = format!("  {}: {}, expected {}\n", one.id, one.verdict.word(), one.expected.word());
     for (label, line) in finding::lines(one) {
         text += &format!("    {label:<10} {line}\n");
     }

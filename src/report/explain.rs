@@ -5,7 +5,7 @@ use crate::reference::{Judged, Moved, NoTable, Printed, Role, Verdict, WhyNoTabl
 use crate::text::number;
 
 use super::markdown::one_line;
-use super::tally::{shown, word};
+use super::tally::{agrees, shown};
 
 /// An entry with what was tried.
 #[derive(Debug)]
@@ -128,7 +128,7 @@ fn rows(view: &EntryView<'_>) -> String {
             if reason.is_some() { "no result".into() } else { found(view, one.moved) },
             shifted,
             off,
-            word(one.moved.verdict).into(),
+            one.moved.verdict.word().into(),
         ]);
     }
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
@@ -147,10 +147,9 @@ fn rows(view: &EntryView<'_>) -> String {
 
 /// Which single change would reproduce it.
 fn turns(view: &EntryView<'_>) -> String {
-    let agrees = |verdict: Verdict| matches!(verdict, Verdict::Reproduced | Verdict::Fitted);
     let now = view.judged.verdict;
     let description = |one: &MoveView<'_>| {
-        format!("  {} = {}: {}\n", one.name, value_in_words(one.unit, one.to), word(one.moved.verdict))
+        format!("  {} = {}: {}\n", one.name, value_in_words(one.unit, one.to), one.moved.verdict.word())
     };
     if agrees(now) {
         let lost: String = view.moves.iter().filter(|one| !agrees(one.moved.verdict)).map(description).collect();

@@ -57,14 +57,11 @@ impl<'a> CheckView<'a> {
 }
 
 fn worse_first(a: &Judged, b: &Judged) -> Ordering {
-    let rank = |one: &Judged| match one.verdict {
-        Verdict::Missing => 0,
-        Verdict::Differs => 1,
-        Verdict::Blocked | Verdict::Undecidable => 2,
-        // Better than expected.
-        Verdict::Fitted | Verdict::Reproduced => 3,
-    };
-    rank(a).cmp(&rank(b)).then(farthest(b).total_cmp(&farthest(a))).then_with(|| a.id.cmp(&b.id))
+    b.verdict
+        .severity()
+        .cmp(&a.verdict.severity())
+        .then(farthest(b).total_cmp(&farthest(a)))
+        .then_with(|| a.id.cmp(&b.id))
 }
 
 /// The largest distance of any of its numbers, in units of its uncertainty; 0 where nothing is measured.

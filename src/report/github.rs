@@ -5,7 +5,6 @@
 
 use super::finding::{self, CheckView, CheckedEntry, Trouble};
 use super::in_pieces::summary;
-use super::tally::word;
 
 /// Annotations written one by one; the tenth counts the rest.
 const TOLD: usize = 9;
@@ -28,7 +27,7 @@ pub fn annotations(view: &CheckView<'_>) -> String {
 
 fn of_entry(entry: &CheckedEntry<'_>) -> String {
     let one = entry.judged;
-    let title = format!("{}: {}, expected {}", one.id, word(one.verdict), word(one.expected));
+    let title = format!("{}: {}, expected {}", one.id, one.verdict.word(), one.expected.word());
     let text: Vec<String> = finding::lines(one).into_iter().map(|(label, line)| format!("{label}: {line}")).collect();
     command(&[("file", entry.file), ("line", &entry.line.to_string()), ("title", &title)], &text.join("\n"))
 }

@@ -2,7 +2,7 @@
 
 use super::finding::{self, CheckView, CheckedEntry};
 use super::markdown::{Align, MarkdownTable, escaped, one_line};
-use super::tally::{Tally, VERDICTS, word};
+use super::tally::{Tally, VERDICTS};
 use crate::reference::Judged;
 use crate::text::words::counted;
 
@@ -38,7 +38,7 @@ impl Section {
 
 fn in_full(entry: &CheckedEntry<'_>) -> String {
     let one = entry.judged;
-    let mut text = format!("- **`{}`**: {}, expected {}\n", one.id, word(one.verdict), word(one.expected));
+    let mut text = format!("- **`{}`**: {}, expected {}\n", one.id, one.verdict.word(), one.expected.word());
     for (label, line) in finding::lines(one) {
         let line = if label == "again" { format!("`{line}`") } else { escaped(&clipped(&line)) };
         text += &format!("  - {label}: {line}\n");
@@ -47,7 +47,7 @@ fn in_full(entry: &CheckedEntry<'_>) -> String {
 }
 
 fn in_a_line(one: &Judged) -> String {
-    format!("- `{}`: {}; {}\n", one.id, word(one.verdict), escaped(&clipped(&one_line(&one.found))))
+    format!("- `{}`: {}; {}\n", one.id, one.verdict.word(), escaped(&clipped(&one_line(&one.found))))
 }
 
 fn fenced(title: &str, message: &str) -> String {
@@ -70,7 +70,7 @@ fn clipped(text: &str) -> String {
 
 fn by_experiment(view: &CheckView<'_>) -> String {
     let mut header = vec![("Experiment", Align::Left)];
-    header.extend(VERDICTS.map(|verdict| (word(verdict), Align::Right)));
+    header.extend(VERDICTS.map(|verdict| (verdict.word(), Align::Right)));
     let mut table = MarkdownTable::new(&header);
     for experiment in view.entries.chunk_by(|a, b| a.judged.experiment == b.judged.experiment) {
         let tally = Tally::of(experiment.iter().map(|entry| entry.judged));

@@ -10,7 +10,6 @@ use crate::reference::{Judged, Verdict};
 
 use super::finding::{self, CheckView, Trouble};
 use super::markdown::one_line;
-use super::tally::word;
 
 /// The suite of files that could not be used.
 const FILES: &str = "files";
@@ -63,7 +62,7 @@ struct Told {
 }
 
 fn outcome(one: &Judged) -> Outcome {
-    let known = || format!("{}: {}", word(one.verdict), one_line(&one.found));
+    let known = || format!("{}: {}", one.verdict.word(), one_line(&one.found));
     if one.as_expected() {
         return match one.verdict {
             Verdict::Blocked | Verdict::Undecidable => {
@@ -73,7 +72,7 @@ fn outcome(one: &Judged) -> Outcome {
             _ => Outcome::Passed(format!("{}\n{}", known(), one_line(&one.explanation))),
         };
     }
-    let message = format!("expected {}, came {}", word(one.expected), word(one.verdict));
+    let message = format!("expected {}, came {}", one.expected.word(), one.verdict.word());
     let mut text = format!("{message}\n");
     for (label, line) in finding::lines(one) {
         text += &format!("{label}: {line}\n");

@@ -1,11 +1,10 @@
 //! What moved between two runs: numbers held against each other with their own uncertainties.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::reference::{COVERAGE, Judged};
 use crate::table::{Data, Table};
 use crate::text::number::compact;
-use crate::text::words;
 
 use super::json::{Number, Standing};
 
@@ -124,10 +123,12 @@ pub fn between_verdicts(a: &[Standing], b: &[Standing]) -> Movement {
         } else if old.numbers.is_empty() && new.numbers.is_empty() && old.found != new.found {
             movement.read_differently.push((old.id.clone(), old.found.clone(), new.found.clone()));
         }
-        for (name, number) in &old.numbers {
-            let there = new.numbers.get(name).map_or((f64::NAN, f64::NAN), |number| (number.value, number.u));
+        for name in old.numbers.keys().chain(new.numbers.keys()).collect::<BTreeSet<_>>() {
+            let [here, there] = [old, new].map(|standing| {
+                standing.numbers.get(name).map_or((f64::NAN, f64::NAN), |number| (number.value, number.u))
+            });
             let name = if name.is_empty() { old.id.clone() } else { format!("{}, {name}", old.id) };
-            movement.number(&name, "", (number.value, number.u), there);
+            movement.number(&name, "", here, there);
         }
     }
     movement.new = b.iter().filter(|new| a.iter().all(|old| old.id != new.id)).map(|new| new.id.clone()).collect();
@@ -142,7 +143,7 @@ pub fn standing(judged: &Judged) -> Standing {
         .map(|(name, comparison)| (name.to_owned(), Number::of(comparison.simulated, comparison.u_num)));
     Standing {
         id: judged.id.clone(),
-        verdict: words::of_key(&judged.verdict),
+        verdict: judged.verdict.word().to_owned(),
         found: judged.found.clone(),
         no_table: judged.no_table.clone(),
         numbers: numbers.collect(),
@@ -194,9 +195,8 @@ impl<'t> Rows<'t> {
         }
         // What stands before the first measure tells the rows apart.
         let keys: Vec<_> = table.columns.iter().take_while(|column| !is_measure(&column.name)).collect();
-        let height = table.columns.first().map_or(0, |column| column.data.len());
         let mut by_key = BTreeMap::new();
-        for row in 0..height {
+        for row in 0..table.rows() {
             let cells = keys.iter().filter_map(|column| Some(format!("{} {}", column.name, cell(&column.data, row)?)));
             let key = cells.collect::<Vec<_>>().join(", ");
             let before = (1..).find(|n| !by_key.contains_key(&repeated(&key, *n))).unwrap_or(1);

@@ -2,7 +2,6 @@
 
 use super::chapter::{by_chapter, label};
 use super::svg::{Svg, colour};
-use super::tally::word;
 use super::view::ExperimentView;
 use crate::reference::{Comparison, Verdict};
 use crate::text::number::significant;
@@ -76,7 +75,7 @@ pub fn overview_svg(experiments: &[ExperimentView<'_>]) -> String {
     let mut x = 20.0;
     for verdict in [Verdict::Reproduced, Verdict::Fitted, Verdict::Differs, Verdict::Undecidable, Verdict::Blocked] {
         svg.verdict(x, y - 4.0, verdict);
-        svg.text(x + 10.0, y, "start", word(verdict));
+        svg.text(x + 10.0, y, "start", verdict.word());
         x += 110.0;
     }
     svg.finish(y + 12.0)

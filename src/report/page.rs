@@ -46,7 +46,9 @@ pub fn page(view: &PageView<'_>) -> String {
     let run = format!("{about}{}{}", run::section(experiment), run::effects(view.effects));
     text += &details("How it was run", &run);
     text += &details("Inputs without a source", &assumption::without_source(&experiment.without_source));
-    text += &details("Assumptions", &assumption::links(view.assumptions, view.to_reports));
+    let assumptions = assumption::links(view.assumptions, view.to_reports)
+        + &experiment.moved.as_ref().map_or_else(String::new, |moved| assumption::not_moved(view.assumptions, moved));
+    text += &details("Assumptions", &assumptions);
     text += &details(
         "Proof of the runs, and their cost",
         &(proof::section(view.table) + &accuracy(view.accuracy.as_ref())),

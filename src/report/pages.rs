@@ -8,9 +8,8 @@ use rayon::prelude::*;
 use super::figures::{Said, figure_name, picture, scene_name, shown, vector};
 use super::json::read_json;
 use super::publication::{inputs, reasons_beside, shows_same_scene};
-use super::tally::word;
 use super::verdicts::Judgement;
-use super::views;
+use super::views::{self, report_of};
 use crate::atomic::{self, FileError};
 use crate::experiment::{Experiment, FigureSpec};
 use crate::figure::{FigureError, Picture, figure_stem, sketch};
@@ -131,7 +130,7 @@ fn judged_elsewhere(study: &Study) -> usize {
     }
     let verdicts = fs::read_to_string(study.layout.path(VERDICTS)).unwrap_or_default();
     let verdicts = read_json(&verdicts).unwrap_or_default();
-    let judged = verdicts.iter().filter(|one| one.verdict != word(Verdict::Missing));
+    let judged = verdicts.iter().filter(|one| one.verdict != Verdict::Missing.word());
     let judged: BTreeSet<&str> = judged.filter_map(|one| Some(one.id.split_once('/')?.0)).collect();
     judged.intersection(&unjudged).count()
 }
@@ -241,7 +240,7 @@ fn names(page: &Page<'_>, figure: &FigureSpec) -> [(String, Form); 2] {
 
 /// Name of the page, within the study.
 fn page_of(page: &Page<'_>) -> String {
-    format!("{}/{}.md", page.folder, page.item.source.experiment.id)
+    report_of(page.item.source.folder(), &page.item.source.experiment.id.0)
 }
 
 /// Name of the drawing of what is simulated, within the study.

@@ -1,6 +1,6 @@
 //! What every page would otherwise explain again: how to read it, once.
 
-use super::tally::{VERDICTS, mark, meaning, word};
+use super::tally::{VERDICTS, mark, meaning};
 
 const SYMBOLS: &str = "\
 | Symbol | Meaning |
@@ -46,7 +46,7 @@ simultaneous events.
 pub(super) fn section() -> String {
     let mut text = format!("## How to read\n\n{TEXT}\n| | Verdict | Meaning |\n| --- | --- | --- |\n");
     for verdict in VERDICTS {
-        text += &format!("| {} | {} | {} |\n", mark(verdict), word(verdict), meaning(verdict));
+        text += &format!("| {} | {} | {} |\n", mark(verdict), verdict.word(), meaning(verdict));
     }
     format!("{text}\n<details><summary>Symbols</summary>\n\n{SYMBOLS}\n</details>\n\n")
 }

@@ -76,7 +76,7 @@ pub fn export_crate(study: &Study, items: &[&Item], folder: &Path, published: &s
     Ok(crated.files.len())
 }
 
-/// Fills a hidden neighbour and gives it the name at the end.
+/// Fills a hidden neighbour and gives it the name at the end; whoever is killed in between leaves the neighbour.
 fn write_whole(files: &BTreeMap<String, Vec<u8>>, folder: &Path) -> Result<(), FileError> {
     let fail = |source| FileError { action: "write", path: folder.to_path_buf(), source };
     let parent = folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -84,7 +84,7 @@ fn write_whole(files: &BTreeMap<String, Vec<u8>>, folder: &Path) -> Result<(), F
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-    let neighbour = builder.prefix(".shotdamp-").tempdir_in(parent).map_err(fail)?;
+    let neighbour = builder.prefix(atomic::PREFIX).tempdir_in(parent).map_err(fail)?;
     for (name, bytes) in files {
         atomic::write(&neighbour.path().join(name), bytes)?;
     }
@@ -114,8 +114,7 @@ impl Crate {
         if study.texts.files.contains_key(STUDY) {
             inputs.push(self.text(study, STUDY, "Study: what it is, and what it concludes".into()));
         }
-        let is_of = |name: &&String| name.starts_with("reference/") && name.ends_with(&format!("/{id}.yaml"));
-        if let Some(name) = study.texts.files.keys().find(is_of) {
+        if let Some(name) = study.reference_names().get(id.0.as_str()) {
             let entries = study.references.get(&id.0).map_or(0, |file: &ReferenceFile| file.entries.len());
             inputs.push(self.text(study, name, format!("Reference: {entries} numbers and claims of the study")));
         }
@@ -306,6 +305,6 @@ fn read_as_recorded(study: &Study, name: &str, hash: &FileHash) -> Result<Vec<u8
     if FileHash::of(&bytes) == *hash {
         Ok(bytes)
     } else {
-        Err(fail(std::io::Error::other("it is not what was written")))
+        Err(fail(std::io::Error::other("it is not what was written; `shotdamp run` writes it again")))
     }
 }

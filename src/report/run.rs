@@ -258,7 +258,8 @@ fn solver_in_words(solver: SolverChoice) -> String {
     }
 }
 
-fn joined(names: &[String]) -> String {
+/// `a, b and c`.
+pub(super) fn joined(names: &[String]) -> String {
     match names {
         [] => String::new(),
         [one] => one.clone(),

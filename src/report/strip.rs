@@ -4,7 +4,7 @@
 use super::chapter::{by_chapter, label};
 use super::markdown::html;
 use super::svg::{Svg, colour};
-use super::tally::{VERDICTS, agrees, mark, word};
+use super::tally::{VERDICTS, agrees, mark};
 use super::view::ExperimentView;
 use crate::experiment::AboutStudy;
 use crate::reference::{Judged, Role};
@@ -61,7 +61,7 @@ pub fn strip_svg(experiments: &[ExperimentView<'_>]) -> String {
                     "<g><title>{}: {}</title><rect x=\"{x:.0}\" y=\"{y:.0}\" width=\"11\" height=\"11\" fill=\"{}\"{outline}/>\
                      <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\" font-size=\"9\" fill=\"#fff\">{}</text></g>\n",
                     html(&one.id),
-                    word(one.verdict),
+                    one.verdict.word(),
                     colour(one.verdict),
                     x + 5.5,
                     y + 9.0,
@@ -79,7 +79,7 @@ pub fn strip_svg(experiments: &[ExperimentView<'_>]) -> String {
             "<rect x=\"{x:.0}\" y=\"{y:.0}\" width=\"11\" height=\"11\" fill=\"{}\"/>\n",
             colour(verdict)
         ));
-        svg.text(x + 16.0, y + 10.0, "start", &format!("{} {}", mark(verdict), word(verdict)));
+        svg.text(x + 16.0, y + 10.0, "start", &format!("{} {}", mark(verdict), verdict.word()));
         x += 118.0;
     }
     svg.raw(&format!(

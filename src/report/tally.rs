@@ -6,18 +6,6 @@ use crate::reference::{Judged, Role, Verdict};
 pub(super) const VERDICTS: [Verdict; 6] =
     [Verdict::Reproduced, Verdict::Fitted, Verdict::Differs, Verdict::Undecidable, Verdict::Blocked, Verdict::Missing];
 
-/// The verdict's word.
-pub(crate) fn word(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Reproduced => "reproduced",
-        Verdict::Fitted => "fitted",
-        Verdict::Differs => "differs",
-        Verdict::Undecidable => "undecidable",
-        Verdict::Blocked => "blocked",
-        Verdict::Missing => "missing",
-    }
-}
-
 /// The verdict's symbol.
 pub(super) fn mark(verdict: Verdict) -> &'static str {
     match verdict {
@@ -51,8 +39,8 @@ pub(super) fn meaning(verdict: Verdict) -> &'static str {
 
 /// The verdict as a page shows it, with what was expected of it if that is something else.
 pub(super) fn shown(judged: &Judged) -> String {
-    let verdict = format!("{} {}", mark(judged.verdict), word(judged.verdict));
-    if judged.as_expected() { verdict } else { format!("**{verdict}** (expected: {})", word(judged.expected)) }
+    let verdict = format!("{} {}", mark(judged.verdict), judged.verdict.word());
+    if judged.as_expected() { verdict } else { format!("**{verdict}** (expected: {})", judged.expected.word()) }
 }
 
 /// The role of an entry as a page tells it; empty where it has none.
@@ -124,7 +112,7 @@ impl Tally {
             .filter(|(_, count)| *count > 0)
             .map(|(verdict, count)| match verdict {
                 Verdict::Differs if count > 1 => format!("{count} differ"),
-                _ => format!("{count} {}", word(verdict)),
+                _ => format!("{count} {}", verdict.word()),
             })
             .collect();
         if parts.is_empty() { "no entries".to_owned() } else { parts.join(", ") }

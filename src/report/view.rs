@@ -14,6 +14,8 @@ pub struct AssumptionView {
     pub name: String,
     /// `60 mm`; see [`crate::experiment::value_in_words`].
     pub value: String,
+    /// Other values could be defended.
+    pub has_range: bool,
     /// Why this value. Markdown.
     pub reason: String,
     /// Ids of the entries whose experiments depend on it.

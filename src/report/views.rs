@@ -126,12 +126,11 @@ fn one_listed<'a>(
     motions: Option<Motions>,
     times: Option<&RunTimes>,
 ) -> ExperimentView<'a> {
-    let folder = if folder.is_empty() { String::new() } else { format!("{folder}/") };
     ExperimentView {
         judged: judged(judgement, &experiment.id.0),
         seconds: times.and_then(|times| times.seconds.get(&experiment.id.0)).copied(),
         motions,
-        page: format!("{folder}{}.md", experiment.id),
+        page: below_reports(folder, &experiment.id.0),
         experiment,
     }
 }
@@ -232,6 +231,7 @@ fn assumptions(
         .map(|(name, entry)| AssumptionView {
             name: name.to_string(),
             value: value_in_words(entry.kind.unit(), &entry.value),
+            has_range: entry.has_range(),
             reason: prose::filled(&judgement.verdicts, &entry.reason, None),
             used_by: used_by(name),
             fitted_to: entry.fitted_to.clone(),

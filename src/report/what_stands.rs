@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::headline::missing_inputs;
 use super::markdown::one_line;
-use super::tally::{agrees, word};
+use super::tally::agrees;
 use super::view::{AssumptionView, ExperimentView};
 use crate::experiment::{AssumptionName, AssumptionSheet, value_in_words};
 use crate::reference::{Judged, Verdict};
@@ -242,7 +242,7 @@ fn in_question(questions: &[Question<'_>]) -> String {
             name = question.name
         );
         for (value, turning) in &question.turns {
-            let entries = turning.iter().map(|(line, verdict)| format!("{} {}", line.link(), word(*verdict)));
+            let entries = turning.iter().map(|(line, verdict)| format!("{} {}", line.link(), verdict.word()));
             text += &format!("  - {value}: {}\n", entries.collect::<Vec<_>>().join(", "));
         }
     }

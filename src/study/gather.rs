@@ -16,7 +16,7 @@ use crate::table::{Column, Data, Table, parquet};
 #[derive(Debug, thiserror::Error)]
 pub enum GatherError {
     /// Rows that no shard has.
-    #[error("{id}: {rows} rows are missing; first do {}", commands(.shards))]
+    #[error("{id}: {} missing; first do {}", if *.rows == 1 { "1 row is".to_owned() } else { format!("{} rows are", .rows) }, commands(.shards))]
     Missing {
         /// Of which experiment.
         id: ExperimentId,
@@ -109,7 +109,8 @@ pub fn gather(layout: &Layout, item: &Item, of: u32) -> Result<Finished, GatherE
     }
     let tables: Vec<Table> = parts.into_iter().map(|(_, table, _)| table).collect();
     let table = Table { metadata: item.provenance(), ..join(&tables, &rows) };
-    let failures = failures(&table);
+    let reasons = table.texts("failure").unwrap_or_default().iter();
+    let failures = Failures::of(reasons.filter(|reason| !reason.is_empty()));
     Ok(Finished { table, failures, ..Finished::default() })
 }
 
@@ -187,10 +188,4 @@ fn joined(column: &Column, tables: &[Table], rows: &[(usize, usize)]) -> Column 
         Data::FloatList(_) => cells!(Data::FloatList, Vec::new()),
     };
     Column { data, ..column.clone() }
-}
-
-fn failures(table: &Table) -> Failures {
-    let mut reasons = table.texts("failure").unwrap_or_default().iter().filter(|reason| !reason.is_empty());
-    let first = reasons.next().cloned().unwrap_or_default();
-    Failures { rows: usize::from(!first.is_empty()) + reasons.count(), first }
 }

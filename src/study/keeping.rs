@@ -1,4 +1,4 @@
-//! Tables on their way: of a large sweep, rows take longer to be made into a table and written than threads take to hear of an interrupt.
+//! Tables on their way: of a large sweep, rows take longer to be made into a table and written than threads take to notice an interrupt.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -149,7 +149,8 @@ fn on_disk(layout: &Layout, item: &Item) -> Option<Table> {
 /// True if the table has the experiment's current fingerprint, and a number in every row.
 fn is_of(item: &Item, table: &Table) -> bool {
     table.metadata.get("fingerprint") == Some(&item.fingerprint())
-        && table.texts("failure").is_some_and(|cells| cells.iter().all(String::is_empty))
+        && table.texts("failure").is_some()
+        && (0..table.rows()).all(|row| !table.has_failed(row))
 }
 
 fn fingerprints(item: &Item) -> BTreeSet<RowFingerprint> {

@@ -153,14 +153,14 @@ impl Loaded {
         Self::chosen(texts, &|_| true, &|_| false, &|_| {})
     }
 
-    /// Reads the assumptions, and the experiments whose ids are `wanted`; the cases of some were `tried` before, of the others `hear`
+    /// Reads the assumptions, and the experiments whose ids are `wanted`; the cases of some were `tried` before, of the others `on_untried`
     /// is told before theirs are.
     #[must_use]
     pub(super) fn chosen(
         texts: &Texts,
         wanted: &dyn Fn(&str) -> bool,
         tried: &dyn Fn(&str) -> bool,
-        hear: &dyn Fn(&Untried<'_>),
+        on_untried: &dyn Fn(&Untried<'_>),
     ) -> Self {
         let mut loaded = Self::default();
         match shared(texts, STUDY, parse_study) {
@@ -185,8 +185,9 @@ impl Loaded {
         for (file, bytes) in experiments() {
             let source = text(file, bytes).and_then(|text| {
                 let id = identify(file, &files_by_stem)?;
-                let hear = |experiment: &Experiment| hear(&Untried { experiment, file, assumptions: &assumptions });
-                let cases = if tried(&id.0) { Cases::Tried } else { Cases::ToTry(&hear) };
+                let on_untried =
+                    |experiment: &Experiment| on_untried(&Untried { experiment, file, assumptions: &assumptions });
+                let cases = if tried(&id.0) { Cases::Tried } else { Cases::ToTry(&on_untried) };
                 let experiment = parse_with(&id, file, text, &assumptions, cases).map_err(Refused::Text)?;
                 Ok(Source { experiment, file: file.clone() })
             });

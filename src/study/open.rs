@@ -67,17 +67,17 @@ impl Study {
         study.complete()
     }
 
-    /// Reads and plans the experiments whose ids are `wanted`, as if there were no others; `hear` is told of each before its cases
+    /// Reads and plans the experiments whose ids are `wanted`, as if there were no others; `on_untried` is told of each before its cases
     /// are tried.
     #[must_use]
     pub fn of(
         layout: Layout,
         texts: Texts,
         wanted: &(dyn Fn(&str) -> bool + Sync),
-        hear: &dyn Fn(&Untried<'_>),
+        on_untried: &dyn Fn(&Untried<'_>),
     ) -> Self {
         let mut study = Self::empty(layout, texts);
-        study.plan(wanted, Used::new(), hear);
+        study.plan(wanted, Used::new(), on_untried);
         study.complete()
     }
 
@@ -121,10 +121,10 @@ impl Study {
     }
 
     /// Reads and plans the experiments whose ids are `wanted`; what the others depend on is worked out.
-    fn plan(&mut self, wanted: &(dyn Fn(&str) -> bool + Sync), mut used: Used, hear: &dyn Fn(&Untried<'_>)) {
+    fn plan(&mut self, wanted: &(dyn Fn(&str) -> bool + Sync), mut used: Used, on_untried: &dyn Fn(&Untried<'_>)) {
         let Self { texts, layout, unread, .. } = self;
         // What an experiment depends on is known where nothing of it has changed.
-        let mut loaded = Loaded::chosen(texts, wanted, &|id| used.contains_key(id), hear);
+        let mut loaded = Loaded::chosen(texts, wanted, &|id| used.contains_key(id), on_untried);
         unread.append(&mut loaded.refused);
         let references = references(texts, &loaded, wanted, unread);
         let items: Vec<Item> = loaded
@@ -200,7 +200,11 @@ impl Study {
             Refused::Text(Problems::at(file, &text(file), Some((line as u64, 1)), mistake))
         };
         let problem = |file: &str, name: &str, mistake: fn(String) -> Lost| {
-            let line = text(file).lines().position(|line| line.contains(name)).map_or(1, |line| line + 1);
+            // Not in a longer name that begins alike.
+            let ends =
+                |rest: &str| !rest.starts_with(|next: char| next.is_alphanumeric() || next == '-' || next == '_');
+            let names = |line: &str| line.match_indices(name).any(|(at, _)| ends(&line[at + name.len()..]));
+            let line = text(file).lines().position(names).map_or(1, |line| line + 1);
             refused(file, line, mistake(name.into()).to_string())
         };
         let in_prose = |file: &str, prose: &Prose| -> Vec<Refused> {

@@ -122,14 +122,14 @@ impl Ahead {
                     Some(seconds) => format!("{} of processor time", quantity(*seconds, "s", 2)),
                     None => "restored from earlier tables".into(),
                 };
-                let most = || match self.simulations {
-                    1 => "1 simulation".to_owned(),
-                    many => format!("{many} simulations"),
-                };
+                let most = usize::try_from(self.simulations).unwrap_or(usize::MAX);
                 let left = match self.experiments {
                     0 => "none left".into(),
-                    1 => format!("1 experiment left, {} at most", most()),
-                    many => format!("{many} experiments left, {} at most", most()),
+                    many => format!(
+                        "{} left, {} at most",
+                        counted(many, "experiment", "experiments"),
+                        counted(most, "simulation", "simulations")
+                    ),
                 };
                 let rows = counted(*rows, "row", "rows");
                 Some(format!("{experiment}: {rows}{failed}, {took}; {left}\n"))

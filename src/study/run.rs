@@ -111,7 +111,7 @@ pub enum RunError {
 
 /// How often the watch looks for an interrupt.
 const LOOK: Duration = Duration::from_millis(20);
-/// How long threads may take to hear of it.
+/// How long threads may take to notice it.
 const GRACE: Duration = Duration::from_millis(200);
 /// Where recursion into other rows' work may end up needs room.
 const STACK: usize = 16 << 20;

@@ -128,10 +128,8 @@ impl Shard {
     #[must_use]
     pub fn has_done(self, layout: &Layout, item: &Item) -> bool {
         let path = layout.path(&self.table_name(&item.source.experiment.id));
-        parquet::read(&path).is_ok_and(|table| {
-            let failed = table.texts("failure").is_some_and(|cells| cells.iter().any(|cell| !cell.is_empty()));
-            self.check(&table, item).is_ok() && !failed
-        })
+        parquet::read(&path)
+            .is_ok_and(|table| self.check(&table, item).is_ok() && (0..table.rows()).all(|row| !table.has_failed(row)))
     }
 
     /// Writes its table of an experiment.

@@ -106,6 +106,7 @@ fn assumptions() -> Vec<AssumptionView> {
         AssumptionView {
             name: "stop_length".into(),
             value: value_in_words("m", &AssumptionValue::Number(0.06)),
+            has_range: false,
             reason: "With 60 mm the curves part\nwhere the text says.".into(),
             used_by: vec!["ch3-limit-stop/parting".into(), "ch3-limit-stop/limit".into(), "ch3-gap/order".into()],
             fitted_to: vec!["ch3-limit-stop/parting".into()],
@@ -113,6 +114,7 @@ fn assumptions() -> Vec<AssumptionView> {
         AssumptionView {
             name: "gravity".into(),
             value: value_in_words("m/s²", &AssumptionValue::Number(9.81)),
+            has_range: false,
             reason: "The usual rounding.".into(),
             used_by: Vec::new(),
             fitted_to: Vec::new(),

@@ -1,10 +1,10 @@
 //! Particles that are alike: what some of them do against the others no structure feels.
 //!
-//! Where k/m and c/m are the same, v = √m w of particle by particle obeys
+//! Where k/m and c/m are the same, v = √μ w of particle by particle, with μ = m by the mass of the first, obeys
 //!
-//! v″ = −(k/m) v − (c/m) v′ − R q″,   and the structure feels Rᵀ((k/m) v + (c/m) v′),   rows of R: √m φ.
+//! v″ = −(k/m) v − (c/m) v′ − R q″,   and the structure feels Rᵀ((k/m) v + (c/m) v′),   rows of R: √μ φ.
 //!
-//! Along an axis z with zᵀR = 0 that is a particle on a face at rest: z·v has a block of its own, to the bit. As many axes as particles
+//! Along an axis z with zᵀR = 0 that is a particle on a face at rest: z·v has a block of its own. As many axes as particles
 //! outnumber the rank of R would give equal eigenvalues, which at critical damping no Schur form tells apart.
 
 use nalgebra::DMatrix;
@@ -22,7 +22,7 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 pub(crate) struct Alike {
     /// Their coordinates.
     places: Vec<usize>,
-    /// √m of each.
+    /// √μ of each, so that no unit of mass tells in S.
     roots: Vec<f64>,
     /// At right angles to each other and of length 1, those first that move the structure.
     axes: Vec<Vec<f64>>,
@@ -38,23 +38,23 @@ impl Alike {
     pub(crate) fn all(system: &HybridSystem, contacts: &[Contact], damping: &[f64], attached: &[usize]) -> Vec<Self> {
         let mut all: Vec<Self> = Vec::new();
         for (slot, &j) in attached.iter().enumerate().filter(|(_, j)| !contacts[**j].is_between()) {
-            let mass = system.particles[j].mass;
             let Law::Resilient { stiffness, .. } = face_of(system, contacts, j).law else { continue };
-            let [stiffness, damping] = [stiffness, damping[j]].map(|part| part / mass);
+            let [stiffness, damping] = [stiffness, damping[j]].map(|part| part / system.particles[j].mass);
+            let place = system.mass.order + slot;
             let same = |a: f64, b: f64| (a - b).abs() <= ROUNDING * a.max(b);
-            let known = all.iter().position(|one| same(one.stiffness, stiffness) && same(one.damping, damping));
-            let at = known.unwrap_or(all.len());
-            if at == all.len() {
-                all.push(Self { places: vec![], roots: vec![], axes: vec![], felt: 0, stiffness, damping });
+            match all.iter_mut().find(|one| same(one.stiffness, stiffness) && same(one.damping, damping)) {
+                Some(one) => one.places.push(place),
+                None => {
+                    all.push(Self { places: vec![place], roots: vec![], axes: vec![], felt: 0, stiffness, damping });
+                }
             }
-            all[at].places.push(system.mass.order + slot);
-            all[at].roots.push(mass.sqrt());
         }
         all.retain(|one| one.stiffness > 0.0 && one.places.len() > 1);
         for one in &mut all {
-            let row = |place: &usize| &face_of(system, contacts, attached[place - system.mass.order]).row;
-            let rows: Vec<Vec<f64>> = one.places.iter().map(row).cloned().collect();
-            one.find_axes(&rows);
+            let particles: Vec<usize> = one.places.iter().map(|place| attached[place - system.mass.order]).collect();
+            let mass = |j: usize| system.particles[j].mass;
+            one.roots = particles.iter().map(|&j| (mass(j) / mass(particles[0])).sqrt()).collect();
+            one.find_axes(&particles.iter().map(|&j| &face_of(system, contacts, j).row[..]).collect::<Vec<_>>());
         }
         all.retain(|one| one.felt < one.places.len());
         all
@@ -69,8 +69,8 @@ impl Alike {
         back: &mut DMatrix<f64>,
         apart: &mut [Option<[f64; 2]>],
     ) {
-        // Each of them has a spring.
         let places: Vec<usize> = (0..elastic.len()).filter(|&i| self.places.contains(&elastic[i])).collect();
+        debug_assert_eq!(places.len(), self.places.len(), "each of them has a spring, so none is a rigid body");
         for (k, (axis, &place)) in self.axes.iter().zip(&places).enumerate() {
             for ((entry, root), &own) in axis.iter().zip(&self.roots).zip(&places) {
                 turn[(place, own)] = entry * root;
@@ -81,7 +81,7 @@ impl Alike {
     }
 
     /// Finds axes along the columns of R, then across; `rows` are those of the faces.
-    fn find_axes(&mut self, rows: &[Vec<f64>]) {
+    fn find_axes(&mut self, rows: &[&[f64]]) {
         let count = self.places.len();
         let column = |k: usize| rows.iter().zip(&self.roots).map(|(row, root)| root * row[k]).collect::<Vec<_>>();
         let mut columns: Vec<Vec<f64>> = (0..rows[0].len()).map(column).collect();

@@ -36,7 +36,7 @@ pub(crate) struct Normal {
     /// What the modes compress each attached particle's face by.
     compressions: Vec<Vec<f64>>,
     /// The damping by dashpots of 1 N s/m at all of them: half cycles set all at once.
-    alike: Vec<f64>,
+    unit_dashpots: Vec<f64>,
     /// Answer to gravity, once it is known.
     pub(crate) gravity: OnceCell<Rc<Load>>,
 }
@@ -72,9 +72,9 @@ impl Conservative {
             let each = || modes.shapes.iter().zip(&modes.omega);
             let compression = |place: usize| each().map(|(shape, omega)| omega * shape[place]).collect();
             let compressions: Vec<Vec<f64>> = (n..order).map(compression).collect();
-            let mut alike = vec![0.0; order * order];
-            compressions.iter().for_each(|row| add_square(&mut alike, 1.0, row));
-            Some(Normal { modes, damping, compressions, alike, gravity: OnceCell::new() })
+            let mut unit_dashpots = vec![0.0; order * order];
+            compressions.iter().for_each(|row| add_square(&mut unit_dashpots, 1.0, row));
+            Some(Normal { modes, damping, compressions, unit_dashpots, gravity: OnceCell::new() })
         };
         self.normal.get_or_init(build).as_ref()
     }
@@ -91,11 +91,11 @@ impl Conservative {
             // It is a block as it stands.
             return None;
         }
-        let Normal { modes, damping: structural, compressions, alike, .. } = self.normal(system, contacts)?;
+        let Normal { modes, damping: structural, compressions, unit_dashpots, .. } = self.normal(system, contacts)?;
         let mut all = structural.clone();
         let first = self.attached.first().map_or(0.0, |&j| damping[j]);
         if self.attached.iter().all(|&j| damping[j] == first) {
-            all.iter_mut().zip(alike).for_each(|(entry, dashpots)| *entry += first * dashpots);
+            all.iter_mut().zip(unit_dashpots).for_each(|(entry, dashpots)| *entry += first * dashpots);
         } else {
             self.attached.iter().zip(compressions).for_each(|(&j, row)| add_square(&mut all, damping[j], row));
         }

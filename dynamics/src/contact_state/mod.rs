@@ -162,8 +162,8 @@ impl Modes {
                     presses.for_each(|across| all.add_square(across.stiffness, &across.row));
                     all
                 });
-                let alike = Alike::all(system, contacts, damping, &modes.attached);
-                modes::split(accelerations, &modes.bare.mass, stiffness.as_ref(), &alike)?
+                let alike = || Alike::all(system, contacts, damping, &modes.attached);
+                modes::split(accelerations, &modes.bare.mass, stiffness.as_ref(), alike)?
             }
         };
         let (spectral, width) = (&modes.spectral, modes.spectral.width());

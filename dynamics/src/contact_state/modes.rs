@@ -3,26 +3,26 @@
 //! A coordinate r that no spring and no dashpot feels (its columns of the matrix are zero) makes a rigid-body motion. By
 //! the momentum along it, ρ = r + M_rr⁻¹ M_re e with the other coordinates e obeys ρ″ = load alone, and e never asks for
 //! r. So ρ is split off by the masses, its block is [[0, 1], [0, 0]] to the bit, and the eigenvalue iteration never sees
-//! the defective zeros that it could not tell apart. Nor does it see the equal eigenvalues of particles that are [`alike`].
+//! the defective zeros that it could not tell apart. Nor does it see the equal eigenvalues of particles that are alike ([`Alike`]).
 
 use nalgebra::DMatrix;
 
 use crate::arithmetic::cholesky::Cholesky;
 use crate::arithmetic::matrix::Matrix;
 use crate::contact_state::alike::Alike;
-use crate::contact_state::spectral::{Spectral, product};
+use crate::contact_state::spectral::{Spectral, by_rows, product};
 use crate::contact_state::undamped::NormalModes;
 use crate::error::EngineError;
 
 /// Splits (p, p′) with p″ = (`accelerations`) (p, p′) and the mass matrix `mass` of p into blocks: V, row by row, and
 /// W = V⁻¹, column by column.
 ///
-/// `stiffness` is that of p where no dashpot acts, `alike` the particles that are.
+/// `stiffness` is that of p where no dashpot acts, `alike` tells which particles are where normal modes do not split them.
 pub(crate) fn split(
     accelerations: &[Vec<f64>],
     mass: &Matrix,
     stiffness: Option<&Matrix>,
-    alike: &[Alike],
+    alike: impl FnOnce() -> Vec<Alike>,
 ) -> Result<Spectral, EngineError> {
     let order = accelerations.len();
     let size = 2 * order;
@@ -59,7 +59,7 @@ pub(crate) fn split(
             let half = |half: usize| {
                 DMatrix::from_fn(count, count, |i, j| accelerations[elastic[i]][half * order + elastic[j]])
             };
-            damped([half(0), half(1)], &elastic, alike)?
+            damped([half(0), half(1)], &elastic, &alike())?
         }
         None => Spectral::default(),
     };
@@ -95,63 +95,76 @@ pub(crate) fn split(
     Ok(Spectral::new(from_blocks, to_blocks, matrices, inner.lasts).fastest_first())
 }
 
-/// Splits (e, e′) with e″ = A e + B e′: places of p in the order of `elastic`.
+/// Splits (e, e′) with e″ = A e + B e′ (`halves`): places of p in the order of `elastic`.
 fn damped(halves: [DMatrix<f64>; 2], elastic: &[usize], alike: &[Alike]) -> Result<Spectral, EngineError> {
     let count = elastic.len();
+    if alike.is_empty() {
+        return coupled(&halves, &(0..count).collect::<Vec<_>>());
+    }
     // x = S e has what alike particles do against each other in coordinates of its own, whose k/m and c/m stand in `apart`.
     let [mut turn, mut back] = [(); 2].map(|()| DMatrix::identity(count, count));
     let mut apart = vec![None; count];
     for one in alike {
         one.turn(elastic, &mut turn, &mut back, &mut apart);
     }
-    let halves = if alike.is_empty() { halves } else { halves.map(|half| product(&turn, &product(&half, &back))) };
+    let halves = halves.map(|half| product(&turn, &product(&half, &back)));
     let together: Vec<usize> = (0..count).filter(|&i| apart[i].is_none()).collect();
-    let few = together.len();
+    let inner = if together.is_empty() { Spectral::default() } else { coupled(&halves, &together)? };
 
-    // Lengths are scaled by frequencies, so that the matrix is of one magnitude: (Ω x, x′).
-    let frequency = |i: usize| scale(apart[i].map_or(halves[0][(i, i)], |[stiffness, _]| stiffness));
-    let mut matrix = vec![0.0; 4 * few * few];
-    for (i, &row) in together.iter().enumerate() {
-        matrix[i * 2 * few + few + i] = frequency(row);
-        for (j, &column) in together.iter().enumerate() {
-            matrix[(few + i) * 2 * few + j] = halves[0][(row, column)] / frequency(column);
-            matrix[(few + i) * 2 * few + few + j] = halves[1][(row, column)];
-        }
-    }
-    let inner = if few > 0 { Spectral::split(2 * few, &matrix)? } else { Spectral::default() };
-
-    let (within, mut matrices) = (inner.width(), inner.matrices);
+    let (few, within) = (together.len(), inner.width());
     let width = within + 2 * (count - few);
     let (mut v, mut w) = (DMatrix::zeros(2 * count, width), DMatrix::zeros(width, 2 * count));
-    for (i, &row) in together.iter().enumerate() {
-        for (half, unit) in [(0, frequency(row)), (1, 1.0)] {
+    for half in 0..2 {
+        for (i, &row) in together.iter().enumerate() {
             for k in 0..within {
-                let (inside, outside) = (half * few + i, half * count + row);
-                v[(outside, k)] = inner.from_blocks[inside * within + k] / unit;
-                w[(k, outside)] = inner.to_blocks[k * 2 * few + inside] * unit;
+                v[(half * count + row, k)] = inner.from_blocks[(half * few + i) * within + k];
+                w[(k, half * count + row)] = inner.to_blocks[k * 2 * few + half * few + i];
             }
         }
     }
+    let mut matrices = inner.matrices;
     for (i, ratios) in apart.iter().enumerate() {
         if let Some([stiffness, damping]) = *ratios {
-            for (half, unit) in [(0, frequency(i)), (1, 1.0)] {
+            let frequency = scale(stiffness);
+            for (half, unit) in [(0, frequency), (1, 1.0)] {
                 let k = 2 * matrices.len() + half;
                 v[(half * count + i, k)] = 1.0 / unit;
                 w[(k, half * count + i)] = unit;
             }
-            matrices.push([0.0, frequency(i), -stiffness / frequency(i), -damping]);
+            matrices.push([0.0, frequency, -stiffness / frequency, -damping]);
         }
     }
-    if !alike.is_empty() {
-        for half in 0..2 {
-            let rows = product(&back, &v.rows(half * count, count).into_owned());
-            v.rows_mut(half * count, count).copy_from(&rows);
-            let columns = product(&w.columns(half * count, count).into_owned(), &turn);
-            w.columns_mut(half * count, count).copy_from(&columns);
+    for half in 0..2 {
+        let rows = product(&back, &v.rows(half * count, count).into_owned());
+        v.rows_mut(half * count, count).copy_from(&rows);
+        let columns = product(&w.columns(half * count, count).into_owned(), &turn);
+        w.columns_mut(half * count, count).copy_from(&columns);
+    }
+    Ok(Spectral::new(by_rows(&v), by_rows(&w), matrices, inner.lasts))
+}
+
+/// Splits what the coordinates `chosen` of x″ = A x + B x′ do by themselves.
+fn coupled(halves: &[DMatrix<f64>; 2], chosen: &[usize]) -> Result<Spectral, EngineError> {
+    // Lengths are scaled by frequencies, so that the matrix is of one magnitude: (Ω x, x′).
+    let count = chosen.len();
+    let frequencies: Vec<f64> = chosen.iter().map(|&i| scale(halves[0][(i, i)])).collect();
+    let mut matrix = vec![0.0; 4 * count * count];
+    for (i, &row) in chosen.iter().enumerate() {
+        matrix[i * 2 * count + count + i] = frequencies[i];
+        for (j, &column) in chosen.iter().enumerate() {
+            matrix[(count + i) * 2 * count + j] = halves[0][(row, column)] / frequencies[j];
+            matrix[(count + i) * 2 * count + count + j] = halves[1][(row, column)];
         }
     }
-    let by_rows = |matrix: DMatrix<f64>| matrix.transpose().as_slice().to_vec();
-    Ok(Spectral::new(by_rows(v), by_rows(w), matrices, inner.lasts))
+    let mut split = Spectral::split(2 * count, &matrix)?;
+    let width = split.width();
+    for (row, frequency) in split.from_blocks.chunks_exact_mut(width).zip(&frequencies) {
+        row.iter_mut().for_each(|entry| *entry /= frequency);
+    }
+    for row in split.to_blocks.chunks_exact_mut(2 * count) {
+        row.iter_mut().zip(&frequencies).for_each(|(entry, frequency)| *entry *= frequency);
+    }
+    Ok(split)
 }
 
 /// The frequency that a coordinate has alone, 1 if it has none: the unit of its rate.

@@ -105,9 +105,13 @@ impl Spectral {
             refine(&a, &mut v, &mut w, &mut t, &firsts);
         }
         let matrices = firsts.iter().map(|&i| settle(piece(&t, i), norm, creeps)).collect();
-        let by_rows = |matrix: DMatrix<f64>| matrix.transpose().as_slice().to_vec();
-        Ok(Self::new(by_rows(v), by_rows(w), matrices, f64::INFINITY))
+        Ok(Self::new(by_rows(&v), by_rows(&w), matrices, f64::INFINITY))
     }
+}
+
+/// Entries row by row.
+pub(crate) fn by_rows(matrix: &DMatrix<f64>) -> Vec<f64> {
+    matrix.transpose().as_slice().to_vec()
 }
 
 /// Order of the piece that begins at `i`: two for a complex pair, one for a real eigenvalue.

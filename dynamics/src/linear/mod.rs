@@ -4,8 +4,9 @@
 //! simulated: the state of any cycle is a power of the map of one cycle ([`cycle`]), the integrals over any number of cycles
 //! are linear in the moments of their states ([`moments`], [`signal`]), and the steady state is where the map stays.
 //!
-//! How strong a drive ends such a run ([`lift_off`]), and the motions of one particle that is struck once a period
-//! ([`struck`]), are in closed form, too.
+//! In closed form, too, by the steady response to a train of impulses ([`struck`]): how strong a drive ends such a run
+//! ([`lift_off`]), below which one no motion with two impacts a period exists ([`two_impacts`]), and at which one a particle that
+//! bounces once a period first touches the ceiling ([`ceiling_graze`]).
 //!
 //! Not linear: half cycles that renew the damping, rigid floors under impulses (every impulse throws the particle off), a
 //! structure that drifts, a given start of the particles. Time histories are kept by the march alone.

@@ -3,7 +3,7 @@
 use super::super::chapter::by_chapter;
 use super::super::comparison::name;
 use super::super::markdown::html;
-use super::super::tally::{VERDICTS, mark, meaning, word};
+use super::super::tally::{VERDICTS, mark, meaning};
 use super::super::view::ExperimentView;
 use super::links::marked;
 use crate::experiment::AboutStudy;
@@ -12,7 +12,7 @@ use crate::reference::{Judged, Role};
 pub(super) fn section(about: &AboutStudy, experiments: &[ExperimentView<'_>]) -> String {
     let mut text = String::from("<h2 id=\"study/every-verdict\">Every verdict</h2>\n<p class=\"key\">");
     for verdict in VERDICTS {
-        let (word, mark) = (word(verdict), mark(verdict));
+        let (word, mark) = (verdict.word(), mark(verdict));
         text += &format!("<span title=\"{}\"><i class=\"v {word}\">{mark}</i> {word}</span> ", meaning(verdict));
     }
     text += "<span><i class=\"v held\"></i> held out</span></p>\n";
@@ -29,7 +29,7 @@ pub(super) fn section(about: &AboutStudy, experiments: &[ExperimentView<'_>]) ->
 
 fn cell(view: &ExperimentView<'_>, one: &Judged) -> String {
     let (held, also) = if one.role == Role::HeldOut { (" held", ", held out") } else { ("", "") };
-    let (word, id) = (word(one.verdict), html(&one.id));
+    let (word, id) = (one.verdict.word(), html(&one.id));
     let link = html(&marked(&view.experiment.id.0, name(one)));
     let label = format!("{id}: {word}{also}");
     let mark = mark(one.verdict);

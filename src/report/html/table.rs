@@ -3,7 +3,7 @@
 use super::super::chapter::by_chapter;
 use super::super::comparison::name;
 use super::super::markdown::{html, one_line};
-use super::super::tally::{VERDICTS, mark, role, word};
+use super::super::tally::{VERDICTS, mark, role};
 use super::super::view::ExperimentView;
 use super::links::marked;
 use super::markdown::{Here, inline};
@@ -35,7 +35,7 @@ fn filters(experiments: &[ExperimentView<'_>]) -> String {
         .filter(|verdict| experiments.iter().flat_map(|view| view.judged).any(|one| one.verdict == *verdict));
     let verdicts: String = verdicts
         .map(|verdict| {
-            let (word, mark) = (word(verdict), mark(verdict));
+            let (word, mark) = (verdict.word(), mark(verdict));
             format!(
                 "<label><input type=\"checkbox\" name=\"verdict\" value=\"{word}\"> <i class=\"v {word}\" \
                  aria-hidden=\"true\">{mark}</i> {word}</label>\n"
@@ -62,8 +62,8 @@ fn row(view: &ExperimentView<'_>, one: &Judged, here: &Here<'_>) -> String {
     let off = one.comparisons().map(|(_, comparison)| comparison.deviation()).fold(f64::NAN, f64::max);
     let (sort, off) =
         if off.is_nan() { (String::new(), String::new()) } else { (off.to_string(), significant(off, 2)) };
-    let (id, verdict) = (html(&one.id), word(one.verdict));
-    let expected = if one.as_expected() { String::new() } else { format!(" (expected: {})", word(one.expected)) };
+    let (id, verdict) = (html(&one.id), one.verdict.word());
+    let expected = if one.as_expected() { String::new() } else { format!(" (expected: {})", one.expected.word()) };
     format!(
         "<tr data-verdict=\"{verdict}\" data-chapter=\"{chapter}\" data-role=\"{role}\">\
          <th scope=\"row\"><a href=\"#{link}\">{id}</a></th><td>{chapter}</td><td>{says}</td><td>{found}</td>\

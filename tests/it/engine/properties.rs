@@ -6,6 +6,7 @@ use shotdamp::dynamics::{Face, HybridSystem, Law, Matrix, Options, Response, eve
 
 use super::arrays::{Dice, any_scene, any_structure, apart, cycles, particle, quiet, spring, structure_after};
 use super::bench::{note, within};
+use super::critical_damping::twins;
 
 fn tries(count: u32) -> ProptestConfig {
     // The same scenes in every run: a test that fails by chance proves nothing.
@@ -140,6 +141,19 @@ pub(super) fn units_are_a_matter_of_taste() {
         }
         within(&format!("seed {seed}"), apart(&own, &other), 0.0, 1e-11 + 3.0 * moved);
     });
+}
+
+#[test]
+pub(super) fn the_unit_of_mass_changes_no_bit() {
+    // Powers of four, whose roots are powers of two.
+    for seed in 0..60 {
+        let system = if seed % 3 == 0 { twins(seed, 0.0) } else { any_scene(seed) };
+        let own = super::arrays::go(&system, &cycles(2));
+        for mass in [2.0_f64.powi(40), 2.0_f64.powi(-40)] {
+            let other = event_driven(&in_units(&system, mass, 1.0, 1.0), &cycles(2)).expect("it runs in other units");
+            within(&format!("seed {seed}, a mass unit of {mass:e} kg"), apart(&own, &other), 0.0, 0.0);
+        }
+    }
 }
 
 #[test]
