@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use shotdamp::report::{Number, Standing, between_verdicts};
 use shotdamp::table::{Data, Table, parquet};
 
 use crate::desk::{Desk, GAP, shotdamp, simulated};
@@ -112,6 +113,25 @@ fn a_run_is_held_against_the_committed_report() {
         description.out
     );
     assert!(description.out.contains("beyond their uncertainty: 1\n    ch3-stop/at-two: "), "{}", description.out);
+}
+
+/// Words of a claim, or a number that there was none of, say something that no old number shows.
+#[test]
+fn an_entry_that_reads_otherwise_under_the_same_verdict_is_a_difference() {
+    let standing = |found: &str, numbers: &[(&str, f64)]| Standing {
+        id: "ch3-gap/grows".into(),
+        verdict: "differs".into(),
+        found: found.into(),
+        no_table: None,
+        numbers: numbers.iter().map(|(name, value)| ((*name).to_owned(), Number { value: *value, u: 0.1 })).collect(),
+    };
+    let between = |a: Standing, b: Standing| between_verdicts(&[a], &[b]);
+    let words = between(standing("it falls at 2", &[]), standing("it falls at 3", &[]));
+    assert_eq!(words.read_differently.len(), 1);
+    let came = between(standing("no peak", &[]), standing("2.5", &[("", 2.5)]));
+    assert_eq!((came.moved.len(), came.same), (1, 0));
+    let went = between(standing("2.5", &[("at", 2.5)]), standing("no peak", &[]));
+    assert_eq!((went.moved.len(), went.same), (1, 0));
 }
 
 #[test]
