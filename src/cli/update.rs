@@ -42,8 +42,8 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     print_unread(chosen.unread.iter().copied());
     print_warnings(study.warnings().as_ref());
     let todo = todo(&chosen, args);
-    // In a run of the whole study there would be dozens of them.
-    if !args.choice.is_all() {
+    // In a run of a whole study there would be dozens of them.
+    if !args.choice.is_all() || todo.len() <= NAMED {
         for item in &todo {
             let experiment = &item.source.experiment;
             for warning in before_run(experiment, &study.sheet.assumptions()) {

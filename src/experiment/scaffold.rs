@@ -49,7 +49,7 @@ scene:
   excitation: {{impulse_train: {{{at_force}force_ratio: swept, frequency_ratio: 1}}}}
 sweep:
   force_ratio: {{log: {{from: 0.1, to: 100, points: 31}}}}
-run: {{skip: 25 cycles, average: 100 cycles, ensemble: 8 members}}
+run: {{skip: 100 cycles, average: 100 cycles, ensemble: 8 members}}
 measure: velocity_ratio
 figure:
   x: {{column: force_ratio, scale: log}}
@@ -73,7 +73,7 @@ fn example(kind: &Kind, key: &str, form: Form) -> Option<&'static str> {
         (Form::Stiffness, _) => "1000 N/m",
         (Form::Stress, _) => "200 GPa",
         (Form::Density, _) => "7800 kg/m^3",
-        (Form::Ratio, "rayleigh") => "5e-5",
+        (Form::Ratio, "rayleigh") => "1e-3",
         (Form::Ratio, "poisson_ratio") => "0.3",
         (Form::Ratio, _) => "0.05",
     })

@@ -25,7 +25,7 @@ pub use bounds::{Bounds, BoundsError, Spacing};
 pub use cma_es::CmaEs;
 pub use dense::{Dense, dense};
 pub use genetic::{Genetic, GeneticSettings};
-pub use parabola::{Point, overshoot};
+pub use parabola::{Parabola, Point, overshoot};
 pub use polish::{Slope, Smooth, polish};
 pub use random::Stream;
 pub use search::{Batch, Found, Function, Optimiser, Score, Stalled, Step, Stopped, Stopping, Wanted, minimise};

@@ -122,7 +122,9 @@ fn greatest_first(list: &[Extraction], view: &View<'_>) -> Result<Decision, Abse
     let values = list.iter().map(|one| one.take(view)).collect::<Result<Vec<_>, _>>()?;
     let mut tally = Tally::new(unit_of(&values));
     for pair in values.windows(2) {
-        tally.require_strictly(pair[0].value - pair[1].value, libm::hypot(pair[0].run, pair[1].run), String::new);
+        let [a, b] = [&pair[0], &pair[1]];
+        let (margin, u) = if are_equal(a, b) { (0.0, 0.0) } else { (a.value - b.value, libm::hypot(a.run, b.run)) };
+        tally.require_strictly(margin, u, String::new);
     }
     let decision = tally.decision()?;
     let common = words::common(list);
@@ -131,6 +133,7 @@ fn greatest_first(list: &[Extraction], view: &View<'_>) -> Result<Decision, Abse
     for (i, text) in shown.iter().enumerate() {
         if let Some(before) = i.checked_sub(1) {
             found += match values[before].value.total_cmp(&values[i].value) {
+                _ if are_equal(&values[before], &values[i]) => " = ",
                 _ if decision.outcome == Outcome::Undecided => " ≈ ",
                 Ordering::Greater => " > ",
                 Ordering::Equal => " = ",
@@ -146,13 +149,22 @@ fn greatest_first(list: &[Extraction], view: &View<'_>) -> Result<Decision, Abse
         // Too close for any number of digits.
         if let Some(before) = i.checked_sub(1)
             && shown[before] == *text
-            && values[before].value != values[i].value
+            && !are_equal(&values[before], &values[i])
         {
             let less = values[before].value - values[i].value;
             found += &format!(" {} {}", if less > 0.0 { '−' } else { '+' }, significant(less.abs(), 1));
         }
     }
     Ok(Decision { found, ..decision })
+}
+
+/// Share of two numbers below which their difference is nothing that one could be greater by.
+const NOTHING: f64 = 1e-9;
+
+/// Both are known so well, and are so near, that neither is greater.
+fn are_equal(a: &Extracted, b: &Extracted) -> bool {
+    let (apart, u) = ((a.value - b.value).abs(), libm::hypot(a.run, b.run));
+    apart == 0.0 && u == 0.0 || apart.max(COVERAGE * u) <= NOTHING * a.value.abs().max(b.value.abs())
 }
 
 /// The unit that numbers of one claim share.

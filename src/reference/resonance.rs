@@ -4,6 +4,7 @@
 //! itself. So the parabola goes through 1/y², on points at any distances; what the next wider points say instead is how
 //! well the grid knows the result. Where the response is not positive, the parabola goes through the response.
 
+use crate::optimise::{Parabola, Point};
 use serde::{Deserialize, Serialize};
 
 use super::extract::Extracted;
@@ -156,27 +157,20 @@ struct Top {
     y: f64,
 }
 
-/// A point of a response.
-#[derive(Debug, Clone, Copy)]
-struct Point {
-    x: f64,
-    y: f64,
-}
-
 /// The vertex of the parabola through three points of which the middle one is the highest.
 fn vertex(points: [Point; 3]) -> Top {
     let reciprocal = points.iter().all(|point| point.y > 0.0);
     let height = |point: Point| if reciprocal { -1.0 / (point.y * point.y) } else { point.y };
     let [left, middle, right] = points;
-    let (before, after) = (middle.x - left.x, right.x - middle.x);
-    let rise = (height(middle) - height(left)) / before;
-    let fall = (height(right) - height(middle)) / after;
-    let curvature = (fall - rise) / (before + after);
-    let slope = (rise * after + fall * before) / (before + after);
-    let aside = if curvature < 0.0 { (-slope / (2.0 * curvature)).clamp(-before, after) } else { 0.0 };
-    let top = height(middle) + aside * (slope + aside * curvature);
+    let heights = points.map(|point| Point { x: point.x, y: height(point) });
+    let bulge = Parabola::through(1, |i| heights.get(i).copied()).filter(|parabola| parabola.curvature < 0.0);
+    let vertex = bulge.map(|parabola| {
+        let behind = (-parabola.slope / (2.0 * parabola.curvature)).clamp(left.x - middle.x, right.x - middle.x);
+        Point { x: middle.x + behind, y: parabola.height(behind) }
+    });
+    let Point { x, y: top } = vertex.unwrap_or(heights[1]);
     let y = if reciprocal && top < 0.0 { 1.0 / (-top).sqrt() } else { middle.y.max(top) };
-    Top { x: middle.x + aside, y }
+    Top { x, y }
 }
 
 /// A number of the peak at a grid point, and its uncertainty: what the errors of the three points do to it, and how far it

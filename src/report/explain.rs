@@ -58,9 +58,10 @@ pub fn explain(view: &EntryView<'_>) -> String {
         };
         text += &format!("  {:<10} {} chosen by it{also}\n", "fitted", names(&view.chosen_by));
     }
+    let has_experiment = !matches!(judged.no_table, Some(NoTable { why: WhyNoTable::NoExperiment, .. }));
     if view.moves.is_empty() {
         text += &match &judged.no_table {
-            Some(NoTable { why: WhyNoTable::NoExperiment, .. }) => String::new(),
+            Some(_) if !has_experiment => String::new(),
             Some(NoTable { experiment, .. }) => format!("\nWhat moves it is known once `{experiment}` has been run.\n"),
             None => "\nNo assumption was moved for it.\n".into(),
         };
@@ -75,7 +76,7 @@ pub fn explain(view: &EntryView<'_>) -> String {
         text += &rows(view);
         text += &format!("\n{}", turns(view));
     }
-    if !view.unmoved.is_empty() && judged.no_table.is_none() {
+    if !view.unmoved.is_empty() && has_experiment {
         text += &format!(
             "\nIts experiment also depends on these, which were not moved: {}.\n\
              `shotdamp explain --run {}` moves those that have other values.\n",

@@ -10,6 +10,7 @@ use crate::arithmetic::cholesky::Cholesky;
 use crate::arithmetic::matrix::{Matrix, dot};
 use crate::contact_state::damped;
 use crate::contact_state::load::Load;
+use crate::contact_state::rigid::RigidMotions;
 use crate::contact_state::spectral::Spectral;
 use crate::contact_state::undamped::NormalModes;
 use crate::error::EngineError;
@@ -53,7 +54,7 @@ impl Conservative {
         })
     }
 
-    /// Its normal modes: none where a coordinate has no spring, where springs are between particles and second faces, and of
+    /// Its normal modes: none where a rigid-body motion has no spring, where springs are between particles and second faces, and of
     /// many coordinates.
     pub(crate) fn normal(&self, system: &HybridSystem, contacts: &[Contact]) -> Option<&Normal> {
         let build = || {
@@ -61,6 +62,9 @@ impl Conservative {
                 return None;
             }
             let stiffness = stiffness(system, contacts, &self.attached);
+            if RigidMotions::of(&stiffness).is_some() {
+                return None;
+            }
             let modes = NormalModes::new(&stiffness, &self.mass)?;
             let n = system.damping.order;
             let damped: Vec<Vec<f64>> = modes.shapes.iter().map(|shape| system.damping.times(&shape[..n])).collect();

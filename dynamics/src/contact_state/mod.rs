@@ -20,6 +20,7 @@ mod damped;
 pub(crate) mod load;
 pub(crate) mod modes;
 mod resonance;
+mod rigid;
 pub(crate) mod spectral;
 mod undamped;
 
@@ -155,15 +156,11 @@ impl Modes {
             Some(spectral) => spectral,
             None => {
                 let accelerations = modes.accelerations(system);
-                let undamped = accelerations.iter().all(|row| row[order..].iter().all(|entry| *entry == 0.0));
-                let stiffness = undamped.then(|| {
-                    let mut all = conservative::stiffness(system, contacts, &modes.attached);
-                    let presses = modes.across.iter().filter(|across| across.presses);
-                    presses.for_each(|across| all.add_square(across.stiffness, &across.row));
-                    all
-                });
+                let mut stiffness = conservative::stiffness(system, contacts, &modes.attached);
+                let presses = modes.across.iter().filter(|across| across.presses);
+                presses.for_each(|across| stiffness.add_square(across.stiffness, &across.row));
                 let alike = || Alike::all(system, contacts, damping, &modes.attached);
-                modes::split(accelerations, &modes.bare.mass, stiffness.as_ref(), alike)?
+                modes::split(accelerations, &modes.bare.mass, &stiffness, alike)?
             }
         };
         let (spectral, width) = (&modes.spectral, modes.spectral.width());

@@ -1,6 +1,7 @@
 //! Modes of a contact state: rigid-body motions apart, exactly; the rest scaled and split into blocks.
 //!
-//! A coordinate r that no spring and no dashpot feels (its columns of the matrix are zero) makes a rigid-body motion. By
+//! A coordinate r that no spring and no dashpot feels (its columns of the matrix are zero) makes a rigid-body motion; one along several
+//! coordinates is made one of them first ([`RigidMotions`]). By
 //! the momentum along it, ρ = r + M_rr⁻¹ M_re e with the other coordinates e obeys ρ″ = load alone, and e never asks for
 //! r. So ρ is split off by the masses, its block is [[0, 1], [0, 0]] to the bit, and the eigenvalue iteration never sees
 //! the defective zeros that it could not tell apart. Nor does it see the equal eigenvalues of particles that are alike ([`Alike`]).
@@ -10,18 +11,31 @@ use nalgebra::DMatrix;
 use crate::arithmetic::cholesky::Cholesky;
 use crate::arithmetic::matrix::Matrix;
 use crate::contact_state::alike::Alike;
+use crate::contact_state::rigid::RigidMotions;
 use crate::contact_state::spectral::{Spectral, by_rows, product};
 use crate::contact_state::undamped::NormalModes;
 use crate::error::EngineError;
 
-/// Splits (p, p′) with p″ = (`accelerations`) (p, p′) and the mass matrix `mass` of p into blocks: V, row by row, and
-/// W = V⁻¹, column by column.
-///
-/// `stiffness` is that of p where no dashpot acts, `alike` tells which particles are where normal modes do not split them.
+/// Splits (p, p′) with p″ = (`accelerations`) (p, p′) and the mass and stiffness matrices of p into blocks: V, row by row, and
+/// W = V⁻¹, column by column. `alike` tells which particles are where normal modes do not split them.
 pub(crate) fn split(
     accelerations: &[Vec<f64>],
     mass: &Matrix,
-    stiffness: Option<&Matrix>,
+    stiffness: &Matrix,
+    alike: impl FnOnce() -> Vec<Alike>,
+) -> Result<Spectral, EngineError> {
+    let Some(rigid) = RigidMotions::of(stiffness) else { return by_coordinates(accelerations, mass, stiffness, alike) };
+    let [mass, stiffness] = [rigid.form(mass, false), rigid.form(stiffness, true)];
+    let mut split = by_coordinates(&rigid.accelerations(accelerations), &mass, &stiffness, alike)?;
+    rigid.back(&mut split.from_blocks, &mut split.to_blocks);
+    Ok(split)
+}
+
+/// The same where rigid-body motions are coordinates.
+fn by_coordinates(
+    accelerations: &[Vec<f64>],
+    mass: &Matrix,
+    stiffness: &Matrix,
     alike: impl FnOnce() -> Vec<Alike>,
 ) -> Result<Spectral, EngineError> {
     let order = accelerations.len();
@@ -39,7 +53,8 @@ pub(crate) fn split(
     let shift: Vec<Vec<f64>> =
         elastic.iter().map(|&j| solve.solve(&rigid.iter().map(|&i| mass.at(i, j)).collect::<Vec<_>>())).collect();
 
-    let undamped = stiffness.filter(|_| count > 0).and_then(|stiffness| {
+    let no_dashpot = || accelerations.iter().all(|row| row[order..].iter().all(|entry| *entry == 0.0));
+    let undamped = (count > 0 && no_dashpot()).then(|| {
         let chosen = |entry: &dyn Fn(usize, usize) -> f64| Matrix {
             order: count,
             entries: (0..count * count).map(|at| entry(at / count, at % count)).collect(),
@@ -52,6 +67,7 @@ pub(crate) fn split(
         let stiffness = chosen(&|i, j| stiffness.at(elastic[i], elastic[j]));
         NormalModes::new(&stiffness, &chosen(&left)).map(|modes| modes.undamped())
     });
+    let undamped = undamped.flatten();
 
     let inner = match undamped {
         Some(undamped) => undamped,

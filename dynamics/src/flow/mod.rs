@@ -44,6 +44,10 @@ use crate::flow::steps::Steps;
 use crate::flow::way::{MOST_BLOCKS, Ways};
 use crate::system::{Contact, DrivePhase, HybridSystem, Particle};
 
+/// Distance of a block's eigenvalue from the drive's, as a share of that, below which the steady answer is more than ten times what the
+/// drive does in a cycle.
+const NEAR_RESONANCE: f64 = 0.05;
+
 /// One contact state, ready to be propagated.
 pub(crate) struct Flow {
     /// What it shares with the flows of other drives.
@@ -70,6 +74,9 @@ pub(crate) struct Flow {
     drifts: bool,
     /// Some blocks take in the harmonic drive, whose phase they start with.
     is_resonant: bool,
+    /// The drive is so near to the frequency of a block that its steady answer may be far above the motion, which is the difference of that
+    /// answer and of free motion: squares of the two have no digits to spare.
+    pub(crate) is_near_resonance: bool,
     /// Coordinates: those of the structure, then one per resilient contact.
     pub(crate) order: usize,
     /// Answer to a unit force at the forcing point.
@@ -153,6 +160,11 @@ impl Flow {
         let highest_frequency = turning.map(|block| block.determinant.sqrt()).fold(0.0, f64::max);
         blocks.extend(harmonic.as_ref().map(|steady| Block::harmonic(steady.omega)));
         let is_resonant = modes.spectral.to_blocks.len() > 2 * modes.order * modes.spectral.width();
+        let is_driven_near = |block: &Block| {
+            let omega = harmonic.as_ref().map_or(0.0, |steady: &Steady| steady.omega);
+            block.oscillates() && libm::hypot(block.decay, block.root - omega) <= NEAR_RESONANCE * omega
+        };
+        let is_near_resonance = !is_resonant && blocks[..own].iter().any(is_driven_near);
         if !(system.drive.period.is_finite() && blocks.iter().all(Block::is_finite)) {
             return Err(EngineError::RateNotFinite);
         }
@@ -174,6 +186,7 @@ impl Flow {
             propagators: Propagator::of(propagators, &modes.spectral.matrices, &blocks),
             drifts,
             is_resonant,
+            is_near_resonance,
             blocks,
             own,
             highest_frequency,
@@ -217,7 +230,8 @@ impl Flow {
     pub(crate) fn closed(&self) -> Option<&Closed> {
         let omega = || self.harmonic.as_ref().map(|steady| steady.omega);
         let solved = || Closed::new(&self.blocks, &self.modes.spectral.matrices, omega());
-        self.closed.get_or_init(|| if self.is_resonant { None } else { solved() }).as_ref()
+        let loses = self.is_resonant || self.is_near_resonance;
+        self.closed.get_or_init(|| if loses { None } else { solved() }).as_ref()
     }
 
     /// The squares of the observed velocities, integrated in closed form.

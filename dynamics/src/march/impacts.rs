@@ -68,7 +68,11 @@ impl<E: Effects> March<'_, E> {
                     self.particles[other].gap = -side.away() * stop.length;
                 }
             }
-            self.clarity.ties += tied.len() as u64;
+            if !tied.is_empty() {
+                self.clarity.ties += tied.len() as u64;
+                // One after the other they would leave with other speeds.
+                self.clarity.margin = 0.0;
+            }
             arrived.extend(tied);
         }
         self.settle(&arrived)

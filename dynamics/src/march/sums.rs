@@ -91,7 +91,8 @@ impl<E: Effects> March<'_, E> {
 
     /// The same of one segment by itself.
     pub(super) fn integration_of_one(&self) -> Integration {
-        if self.flow.bank.near_critical.is_empty() { Integration::Pairs } else { Integration::Panels }
+        let keeps_digits = self.flow.bank.near_critical.is_empty() && !self.flow.is_near_resonance;
+        if keeps_digits { Integration::Pairs } else { Integration::Panels }
     }
 
     /// What has to be taken from the observed signals themselves.

@@ -15,8 +15,9 @@ pub struct Proof {
     pub residual_bound: f64,
     /// Events of the whole run: contacts made and lost, stops hit; impulses not counted.
     pub events: u64,
-    /// The smallest distance, in metres, by which a surface would have to be moved for the sequence of events to change; NaN
-    /// from the fixed step, which certifies nothing.
+    /// The smallest distance, in metres, by which a surface would have to be moved for the sequence of events to change: 0 where particles
+    /// strike rigid faces at once. Simultaneous contacts with resilient faces, whose order changes nothing, are left to `ties`. NaN from the
+    /// fixed step, which certifies nothing.
     pub smallest_margin: f64,
     /// Decisions within rounding: simultaneous events that had to be put into an order, contacts that graze.
     pub ties: u64,

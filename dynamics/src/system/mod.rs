@@ -9,8 +9,8 @@ pub(crate) mod spline;
 use crate::arithmetic::elementary::sin_cos;
 use crate::arithmetic::matrix::Matrix;
 
-/// A structure with its particles and its drive, in any consistent units; those named here are SI. Coordinates may be generalised: rows φ
-/// give displacements of points, φ·q.
+/// A structure with its particles and its drive, in any consistent units in which speeds are well above 10⁻⁹, where bouncing ends; those
+/// named here are SI. Coordinates may be generalised: rows φ give displacements of points, φ·q.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HybridSystem {
     /// M of the structure without particles, n by n: kg where coordinates are displacements.

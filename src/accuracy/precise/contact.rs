@@ -88,7 +88,8 @@ impl Run<'_> {
         guards
     }
 
-    pub(super) fn cross(&mut self, j: usize, end: End) -> Result<(), PreciseError> {
+    /// `let_go`: the order of the gap of a particle that is let go; its push vanished by itself, or the force has jumped.
+    pub(super) fn cross(&mut self, j: usize, end: End, let_go: usize) -> Result<(), PreciseError> {
         self.phase = None;
         match (end, self.touches[j]) {
             (End::Squeezed, _) => return Err(PreciseError::Squeezed { particle: j, cycle: self.cycle }),
@@ -132,10 +133,10 @@ impl Run<'_> {
                 self.touches[j] = Touch::Pressed(ceiling);
                 self.fresh[j] = Some((ceiling, true, 2));
             }
-            (End::LetGo, Touch::Held(ceiling)) => self.leave(j, ceiling, 3),
+            (End::LetGo, Touch::Held(ceiling)) => self.leave(j, ceiling, let_go),
             (End::LetGo, Touch::Stopped(ceiling)) => {
                 self.touches[j] = Touch::Pressed(ceiling);
-                self.fresh[j] = Some((ceiling, true, 3));
+                self.fresh[j] = Some((ceiling, true, let_go));
                 self.record(j, EventKind::StopRelease, 0.0, 0.0);
             }
             _ => {}

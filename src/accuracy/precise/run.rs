@@ -286,7 +286,7 @@ impl<'a> Run<'a> {
             self.struck = None;
         }
         match first {
-            Some((_, j, end)) => self.cross(j, end),
+            Some((_, j, end)) => self.cross(j, end, if span.near() > 0.0 { 3 } else { 2 }),
             None => Ok(()),
         }
     }

@@ -497,6 +497,21 @@ pub(super) fn two_particles_that_land_at_once_land_as_one_of_both_masses() {
     }
 }
 
+/// A moment later, the second would meet a floor that the first has struck: another motion, however small that moment.
+#[test]
+pub(super) fn particles_that_land_at_once_on_a_rigid_floor_leave_no_margin() {
+    let mut system = chain(&[1.0], 0.5, 0.0);
+    (system.gravity, system.drive) = (1.0, quiet(1.2));
+    system.particles = [1.0; 2].map(|mass| particle(mass, 100.0, unit(1, 0), [rigid(0.5); 2])).to_vec();
+    let margin = |apart: f64| {
+        let particles = [0.0, apart].map(|more| (Contact::Flight, 0.5 + more, 0.0)).to_vec();
+        let start = StartState::Given { q: vec![0.0], rate: vec![0.0], particles };
+        event_driven(&system, &Options { start, ..cycles(1) }).unwrap().proof.smallest_margin
+    };
+    assert_eq!(margin(0.0), 0.0);
+    assert!(margin(0.1) > 0.0);
+}
+
 #[test]
 pub(super) fn a_blow_from_above_leaves_the_neighbour_that_loses_its_floor() {
     // A seesaw: two masses on a bar that turns about its middle. What lands on one side throws the other one up, or, where

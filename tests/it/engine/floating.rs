@@ -3,9 +3,13 @@
 //! A coordinate without spring has an eigenvalue zero, twice if no dashpot holds it either. A constant load then moves it
 //! for ever, so that "static answer" means a terminal velocity or a fall.
 
-use shotdamp::dynamics::{Contact, EventKind, Options, StartState};
+use std::time::Duration;
+
+use shotdamp::accuracy::precise::precise;
+use shotdamp::dynamics::{Contact, EventKind, Law, Matrix, Options, StartState, Tick, event_driven};
 use shotdamp::scene::{Excitation, PulseShape, Scene, Walls};
 
+use super::arrays::{Dice, chain, particle, quiet, spring, unit};
 use super::bench::{GRAVITY, base, close, damper, nothing, once, only, resilient, rigid, run, scene, within};
 
 #[test]
@@ -34,6 +38,49 @@ pub(super) fn under_a_constant_force_it_creeps_at_its_terminal_velocity() {
     let terminal = force / damping;
     close("RMS velocity", response.window().rms_velocity(), terminal, 1e-13);
     close("displacement", response.final_displacement, terminal * (20.0 - mass / damping), 1e-13);
+}
+
+#[test]
+pub(super) fn chains_that_float_as_a_whole_move_as_they_do_in_many_digits() {
+    // Springs between neighbours alone: the motion of all together is along no coordinate. It is damped not at all, by dashpots beside
+    // the springs, by one at one end, or by one at each mass.
+    for seed in 0..90 {
+        let mut dice = Dice(seed);
+        let n = [2, 3, 5][(seed % 3) as usize];
+        let kind = seed / 3 % 5;
+        let mut system = chain(&(0..n).map(|_| dice.between(0.5, 2.0)).collect::<Vec<_>>(), 0.0, 0.0);
+        let between = |matrix: &mut Matrix, i: usize, by: f64| {
+            let row: Vec<f64> = unit(n, i).iter().zip(unit(n, i + 1)).map(|(a, b)| a - b).collect();
+            let entries = matrix.entries.chunks_exact_mut(n).zip(&row);
+            entries.for_each(|(entries, a)| entries.iter_mut().zip(&row).for_each(|(entry, b)| *entry += by * a * b));
+        };
+        for i in 0..n - 1 {
+            let stiffness = dice.between(0.3, 100.0);
+            between(&mut system.stiffness, i, stiffness);
+            between(&mut system.damping, i, [0.0, 0.01 * stiffness, dice.between(0.0, 0.5), 0.0, 0.0][kind as usize]);
+        }
+        for i in 0..n {
+            let own = [0.0, 0.0, 0.0, if i == 0 { 0.4 } else { 0.0 }, 0.1 * system.mass.at(i, i)];
+            system.damping.entries[i * n + i] += own[kind as usize];
+        }
+        let floor = [None, Some(Law::Rigid { restitution: 0.0 }), Some(spring(200.0, 0.5))][(seed / 15 % 3) as usize];
+        system.particles = floor.iter().map(|&law| particle(0.1, 0.5, unit(n, n - 1), [law, law])).collect();
+        system.gravity = if floor.is_some() { GRAVITY } else { 0.0 };
+        system.drive = quiet(1.3);
+        system.drive.ticks =
+            vec![Tick { time: 0.0, impulse: 0.3, level: 1.0 }, Tick { time: 0.6, impulse: 0.0, level: -0.5 }];
+        let rate = (0..n).map(|_| dice.between(-1.0, 1.0)).collect();
+        let particles = vec![(Contact::Floor, 0.0, 0.0); system.particles.len()];
+        let start = StartState::Given { q: vec![0.0; n], rate, particles };
+        let options = Options { skip: 0, average: 2, audit: true, start, ..Options::default() };
+        let own = event_driven(&system, &options).unwrap_or_else(|error| panic!("{seed}: {error}"));
+        let exact =
+            precise(&system, &options, Duration::from_secs(60)).unwrap_or_else(|error| panic!("{seed}: {error}"));
+        assert!(own.proof.energy_residual < 1e-11, "{seed}: {:e}", own.proof.energy_residual);
+        within(&format!("{seed}, x"), own.final_displacement, exact.final_displacement, 1e-11);
+        within(&format!("{seed}, x′"), own.final_velocity, exact.final_velocity, 1e-11);
+        within(&format!("{seed}, RMS"), own.window().rms_velocity() / exact.window().rms_velocity(), 1.0, 1e-11);
+    }
 }
 
 #[test]

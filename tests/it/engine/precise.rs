@@ -3,9 +3,9 @@
 use std::time::Duration;
 
 use shotdamp::accuracy::precise::{PreciseError, precise};
-use shotdamp::dynamics::{Law, Options, Response, Stop};
+use shotdamp::dynamics::{Harmonic, Law, Matrix, Options, Response, Stop, event_driven};
 
-use super::arrays::{chain, particle};
+use super::arrays::{chain, particle, quiet, rigid, unit};
 use super::bench::{cases, close, instant, system, within};
 use super::reference_cases::{kind, scene};
 
@@ -66,4 +66,22 @@ fn what_it_does_not_model_is_refused() {
     system.particles.push(particle(0.05, 0.0, vec![1.0], [law, law]));
     let refused = precise(&system, &Options::default(), PATIENCE);
     assert_eq!(refused, Err(PreciseError::Unknown("rigid faces without a gap between them")));
+}
+
+/// Its gap begins with t², not with t³ as where the push vanishes by itself.
+#[test]
+pub(super) fn what_a_jump_of_the_force_throws_off_its_floor_leaves_at_once() {
+    let mut system = chain(&[1.0], 0.5, 0.0);
+    system.gravity = 0.1;
+    system.particles = vec![particle(0.1, 100.0, unit(1, 0), [rigid(0.0), rigid(0.0)])];
+    system.drive = quiet(std::f64::consts::TAU / 0.9);
+    system.drive.ticks = Vec::new();
+    system.drive.harmonic = Some(Harmonic { force: 2.0, angular_frequency: 0.9, phase: 4.6 });
+    assert_eq!((&system.mass, &system.stiffness), (&Matrix::diagonal(&[1.0]), &Matrix::diagonal(&[1.0])));
+    let options = Options { skip: 0, average: 1, ..Options::default() };
+    // By a Taylor integration with bisected events, which shares nothing with either.
+    let expected = -1.566_931_934_56;
+    let exact = precise(&system, &options, Duration::from_secs(60)).unwrap();
+    within("many digits", exact.final_displacement, expected, 1e-11);
+    within("events", event_driven(&system, &options).unwrap().final_displacement, expected, 1e-11);
 }

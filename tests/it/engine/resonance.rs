@@ -1,8 +1,10 @@
 //! A structure without damping, driven at its own frequency or next to it: the answer grows with time.
 
 use std::f64::consts::TAU;
+use std::time::Duration;
 
-use shotdamp::dynamics::{Drive, Harmonic, HybridSystem, Method, Options, event_driven};
+use shotdamp::accuracy::precise::precise;
+use shotdamp::dynamics::{Drive, Harmonic, HybridSystem, Method, Options, TraceRequest, event_driven};
 
 use super::arrays::{Dice, any_structure, beam, chain, cycles, particle, quiet, shape, spring};
 use super::bench::within;
@@ -50,6 +52,35 @@ pub(super) fn at_resonance_and_next_to_it_the_motion_grows_as_its_closed_form() 
             assert!(proof.energy_residual < 4e-12 && proof.momentum_residual < 4e-12, "{apart:e}: {proof:?}");
         }
     }
+}
+
+/// There the motion is far below the steady answer, and its square is not the difference of squares.
+#[test]
+pub(super) fn averages_of_the_first_cycles_next_to_resonance_keep_their_digits() {
+    for damping in [0.0, 1e-5, 1e-4, 1e-3, 1e-2, 0.05] {
+        for apart in [0.0, 1e-6, -1e-4, 1e-3, -5e-3, 2e-2, -0.06] {
+            let mut system = driven(chain(&[1.0], 0.5, 0.5 * damping), 1.0, 1.0 + apart);
+            system.gravity = 0.0;
+            system.drive.harmonic.as_mut().expect("it is driven").phase = 0.7;
+            for count in [1, 3] {
+                let options = cycles(count);
+                let exact = precise(&system, &options, Duration::from_secs(60)).unwrap().window();
+                let simulated = Options { trace: Some(samples(count)), ..options.clone() };
+                for options in [options, simulated] {
+                    let own = event_driven(&system, &options).unwrap();
+                    let what = format!("damping {damping:e}, {apart:e} apart, {count} cycles, {:?}", own.method);
+                    let own = own.window();
+                    within(&format!("{what}, ∫v²"), own.velocity_square / exact.velocity_square, 1.0, 3e-12);
+                    within(&format!("{what}, deviation"), own.deviation_square / exact.deviation_square, 1.0, 3e-12);
+                }
+            }
+        }
+    }
+}
+
+/// A history, which only a simulation has.
+fn samples(cycles: u32) -> TraceRequest {
+    TraceRequest { from_cycle: 0, to_cycle: u64::from(cycles), samples: 4 }
 }
 
 #[test]
