@@ -42,8 +42,7 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     print_unread(chosen.unread.iter().copied());
     print_warnings(study.warnings().as_ref());
     let todo = todo(&chosen, args);
-    // In a run of a whole study there would be dozens of them.
-    if !args.choice.is_all() || todo.len() <= NAMED {
+    if !args.choice.is_all() || todo.len() <= WARNED {
         for item in &todo {
             let experiment = &item.source.experiment;
             for warning in before_run(experiment, &study.sheet.assumptions()) {
@@ -100,6 +99,9 @@ fn verdicts_of(judgement: &Judgement, ids: &BTreeSet<&str>) -> String {
     let summary = if judged { summary_of(judgement, ids) } else { String::new() };
     summary + &doubts(judgement, ids)
 }
+
+/// Experiments of a whole study that a run warns of; of more there would be dozens of warnings.
+const WARNED: usize = 3;
 
 /// Pages of experiments that are named where the index is not that of this run.
 const NAMED: usize = 3;

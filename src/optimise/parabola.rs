@@ -25,16 +25,17 @@ pub fn overshoot(top: usize, point: impl Fn(usize) -> Option<Point>) -> f64 {
     y.rise().max(0.0).max(resonance(top, point).unwrap_or(0.0))
 }
 
-/// The same of a resonance; `None` where it is none.
+/// The same of a resonance; `None` where it is none. Where the parabola of 1/y² comes down to zero the points say nothing of the height: it
+/// may be as much again.
 fn resonance(top: usize, point: impl Fn(usize) -> Option<Point>) -> Option<f64> {
     let inverse = |i: usize| point(i).filter(|one| one.y > 0.0).map(|one| Point { x: one.x, y: 1.0 / (one.y * one.y) });
     let parabola = Parabola::through(top, inverse)?;
-    let height = inverse(top)?.y + parabola.rise().min(0.0);
+    let (here, height) = (point(top)?.y, inverse(top)?.y + parabola.rise().min(0.0));
     let next = [top.checked_sub(2)?, top + 2];
     let lies_on_it =
         |i| inverse(i).is_some_and(|one| (parabola.height(one.x - parabola.middle.x) - one.y).abs() <= NEAR * one.y);
-    (height > 0.0 && next.into_iter().all(lies_on_it))
-        .then(|| 1.0 / height.sqrt() - point(top).map_or(0.0, |one| one.y))
+    let rise = if height > 0.0 { 1.0 / height.sqrt() - here } else { here };
+    next.into_iter().all(lies_on_it).then_some(rise)
 }
 
 /// The parabola through a point and its neighbours.
@@ -86,14 +87,22 @@ mod tests {
 
     #[test]
     fn the_height_of_a_resonance_is_found_from_few_points_in_it() {
-        let amplitude = |x: f64| 1.0 / libm::hypot(1.0 - x * x, 0.04 * x);
-        let highest = 1.0 / (0.04 * (1.0_f64 - 0.02 * 0.02).sqrt());
-        for shift in [0.0, 0.2, 0.5, 0.8] {
+        let found = |damping: f64, shift: f64| {
+            let amplitude = |x: f64| 1.0 / libm::hypot(1.0 - x * x, 2.0 * damping * x);
             let points: Vec<Point> =
                 (0..40).map(|i| 0.5 + 0.025 * (f64::from(i) + shift)).map(|x| Point { x, y: amplitude(x) }).collect();
             let top = (0..40).max_by(|&a, &b| points[a].y.total_cmp(&points[b].y)).unwrap();
-            let found = points[top].y + overshoot(top, |i| points.get(i).copied());
-            assert!((found / highest - 1.0).abs() < 0.03, "{shift}: {found} of {highest}");
+            let rise = overshoot(top, |i| points.get(i).copied());
+            [rise / points[top].y, (points[top].y + rise) * 2.0 * damping * (1.0 - damping * damping).sqrt()]
+        };
+        for shift in [0.0, 0.2, 0.5, 0.8] {
+            let [_, share] = found(0.02, shift);
+            assert!((share - 1.0).abs() < 0.03, "{shift}: {share} of the height");
+        }
+        // With less than a point in it there is no telling.
+        for (damping, shift) in [(0.002, 0.35), (0.001, 0.25)] {
+            let [rise, _] = found(damping, shift);
+            assert!(rise >= 1.0, "{damping}: {rise} of the highest point");
         }
     }
 

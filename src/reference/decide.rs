@@ -78,8 +78,8 @@ fn trend(claim: &Trend, view: &View<'_>) -> Result<Decision, Absence> {
         .collect();
     let mut tally = Tally::new(unit_of(&numbers));
     for pair in numbers.windows(2) {
-        let (margin, u) =
-            (claim.direction.sign() * (pair[1].value - pair[0].value), libm::hypot(pair[0].run, pair[1].run));
+        let (margin, u) = lead(&pair[1], &pair[0]);
+        let margin = claim.direction.sign() * margin;
         if claim.slack > 0.0 {
             tally.require(margin + claim.slack * range, u, String::new);
         } else {
@@ -122,8 +122,7 @@ fn greatest_first(list: &[Extraction], view: &View<'_>) -> Result<Decision, Abse
     let values = list.iter().map(|one| one.take(view)).collect::<Result<Vec<_>, _>>()?;
     let mut tally = Tally::new(unit_of(&values));
     for pair in values.windows(2) {
-        let [a, b] = [&pair[0], &pair[1]];
-        let (margin, u) = if are_equal(a, b) { (0.0, 0.0) } else { (a.value - b.value, libm::hypot(a.run, b.run)) };
+        let (margin, u) = lead(&pair[0], &pair[1]);
         tally.require_strictly(margin, u, String::new);
     }
     let decision = tally.decision()?;
@@ -160,6 +159,11 @@ fn greatest_first(list: &[Extraction], view: &View<'_>) -> Result<Decision, Abse
 
 /// Share of two numbers below which their difference is nothing that one could be greater by.
 const NOTHING: f64 = 1e-9;
+
+/// By how much one number is above another, and its uncertainty; of equal ones neither has any.
+fn lead(of: &Extracted, over: &Extracted) -> (f64, f64) {
+    if are_equal(of, over) { (0.0, 0.0) } else { (of.value - over.value, libm::hypot(of.run, over.run)) }
+}
 
 /// Both are known so well, and are so near, that neither is greater.
 fn are_equal(a: &Extracted, b: &Extracted) -> bool {

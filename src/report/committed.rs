@@ -10,8 +10,6 @@ use super::pages::{NotDrawn, render, rendered};
 use super::verdicts::Judgement;
 use crate::study::{Refused, Study, stem};
 
-/// Folders in folders below `reports/`; ends a walk that a link leads in a circle.
-const DEEPEST: u32 = 8;
 /// What a run writes below `reports/` for an experiment.
 const ENDINGS: [&str; 3] = ["md", "png", "svg"];
 /// Experiments without a table that are named.
@@ -111,7 +109,7 @@ pub fn extra_files(study: &Study, judgement: &Judgement) -> BTreeSet<String> {
 /// All files below `reports/`.
 pub(super) fn present(study: &Study) -> BTreeSet<String> {
     let mut present = BTreeSet::new();
-    walk(&study.layout.path("reports"), "reports", DEEPEST, &mut present);
+    walk(&study.layout.path("reports"), "reports", &mut present);
     present
 }
 
@@ -169,7 +167,7 @@ fn clipped(line: &str) -> String {
     if line.chars().count() <= LONGEST { line.into() } else { line.chars().take(LONGEST - 1).chain(['…']).collect() }
 }
 
-fn walk(folder: &Path, name: &str, depth: u32, found: &mut BTreeSet<String>) {
+fn walk(folder: &Path, name: &str, found: &mut BTreeSet<String>) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
         let Ok(file_name) = entry.file_name().into_string() else { continue };
@@ -177,10 +175,14 @@ fn walk(folder: &Path, name: &str, depth: u32, found: &mut BTreeSet<String>) {
             continue;
         }
         let name = format!("{name}/{file_name}");
-        let is_folder = entry.path().is_dir();
-        if is_folder && depth > 0 {
-            walk(&entry.path(), &name, depth - 1, found);
-        } else if !is_folder {
+        // A linked folder holds somebody's own files, or some that are here anyway.
+        let Ok(kind) = entry.file_type() else { continue };
+        if kind.is_symlink() && entry.path().is_dir() {
+            continue;
+        }
+        if kind.is_dir() {
+            walk(&entry.path(), &name, found);
+        } else {
             found.insert(name);
         }
     }

@@ -40,8 +40,7 @@ pub struct Trouble {
 }
 
 impl<'a> CheckView<'a> {
-    /// The entries that are not as expected, the worst first: those without a result, then by the distance in units of
-    /// their uncertainty.
+    /// The entries that are not as expected, the worst verdict first, then the distance in units of their uncertainty.
     pub(super) fn unexpected(&self) -> Vec<&CheckedEntry<'a>> {
         let mut found: Vec<_> = self.entries.iter().filter(|entry| !entry.judged.as_expected()).collect();
         found.sort_by(|a, b| worse_first(a.judged, b.judged));

@@ -9,7 +9,7 @@ use super::threshold::missed;
 use crate::dynamics::{Allowance, Limit, Until};
 use crate::experiment::{Assumptions, Case, Experiment};
 use crate::measure::{Settings, SolverChoice};
-use crate::scene::{Scene, Surface};
+use crate::scene::{Damper, Scene, Surface};
 use crate::text::number::{compact, significant};
 use crate::text::words::counted;
 
@@ -40,10 +40,10 @@ pub fn forecast(experiment: &Experiment, assumptions: &Assumptions) -> Vec<Strin
         .collect()
 }
 
-/// Those that a run begins with: what may never end, and averages that begin too early.
+/// Those that a run begins with: what may never end, averages that begin too early, and dampers that do nothing.
 #[must_use]
 pub fn before_run(experiment: &Experiment, assumptions: &Assumptions) -> Vec<String> {
-    let told = |(cause, _): &(Cause, String)| matches!(cause, Cause::Bounces | Cause::Transient);
+    let told = |(cause, _): &(Cause, String)| matches!(cause, Cause::Bounces | Cause::Transient | Cause::Still);
     of_scenes(experiment, assumptions).into_iter().filter(told).map(|(_, warning)| warning).collect()
 }
 
@@ -89,6 +89,7 @@ enum Cause {
     Silence,
     Steps,
     Dampers,
+    Still,
     Modes,
     Bounces,
     Transient,
@@ -119,6 +120,11 @@ fn of_scene(experiment: &Experiment, scene: &Scene, solvers: &[SolverChoice]) ->
     let modes = scene.structure.model().natural_frequencies().len();
     if modes >= MANY_MODES {
         warnings.push((Cause::Modes, format!("{modes} modes: each contact state takes seconds to set up")));
+    }
+    let stands_still = |damper: &Damper| !scene.structure.model().moves(damper.at);
+    if let Some(number) = scene.dampers.iter().position(stands_still) {
+        let warning = format!("damper {} stands where the structure does not move: it does nothing", number + 1);
+        warnings.push((Cause::Still, warning));
     }
     for damper in &scene.dampers {
         if let Surface::Rigid { restitution } = damper.floor

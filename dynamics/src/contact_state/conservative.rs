@@ -62,7 +62,7 @@ impl Conservative {
                 return None;
             }
             let stiffness = stiffness(system, contacts, &self.attached);
-            if RigidMotions::of(&stiffness).is_some() {
+            if RigidMotions::are_left_by(&stiffness) {
                 return None;
             }
             let modes = NormalModes::new(&stiffness, &self.mass)?;

@@ -591,8 +591,12 @@ mod tests {
                 let [unit, matrix] = system.residuals(&own);
                 assert!(unit < 1e-13 && matrix < 5e-14, "{structure}, {particles}, {ratio}: {unit:e}, {matrix:e}");
                 let rows = system.accelerations();
-                let schur = crate::contact_state::modes::split(&rows, &system.mass, &system.stiffness, Vec::new)
-                    .expect("it ends");
+                let schur = crate::contact_state::modes::split(
+                    &rows,
+                    [&system.mass, &system.damping, &system.stiffness],
+                    Vec::new,
+                )
+                .expect("it ends");
                 if schur.lasts.is_infinite() {
                     for (sums, spectral) in means.iter_mut().zip([&own, &schur]) {
                         let residuals = system.residuals(spectral);

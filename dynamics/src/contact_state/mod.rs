@@ -157,10 +157,16 @@ impl Modes {
             None => {
                 let accelerations = modes.accelerations(system);
                 let mut stiffness = conservative::stiffness(system, contacts, &modes.attached);
-                let presses = modes.across.iter().filter(|across| across.presses);
-                presses.for_each(|across| stiffness.add_square(across.stiffness, &across.row));
+                let mut dashpots = system.damping.padded(order);
+                for (slot, &j) in modes.attached.iter().enumerate() {
+                    dashpots.entries[(system.mass.order + slot) * (order + 1)] = damping[j];
+                }
+                for across in modes.across.iter().filter(|across| across.presses) {
+                    stiffness.add_square(across.stiffness, &across.row);
+                    dashpots.add_square(across.damping, &across.row);
+                }
                 let alike = || Alike::all(system, contacts, damping, &modes.attached);
-                modes::split(accelerations, &modes.bare.mass, &stiffness, alike)?
+                modes::split(accelerations, [&modes.bare.mass, &dashpots, &stiffness], alike)?
             }
         };
         let (spectral, width) = (&modes.spectral, modes.spectral.width());

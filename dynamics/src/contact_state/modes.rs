@@ -16,16 +16,17 @@ use crate::contact_state::spectral::{Spectral, by_rows, product};
 use crate::contact_state::undamped::NormalModes;
 use crate::error::EngineError;
 
-/// Splits (p, p′) with p″ = (`accelerations`) (p, p′) and the mass and stiffness matrices of p into blocks: V, row by row, and
-/// W = V⁻¹, column by column. `alike` tells which particles are where normal modes do not split them.
+/// Splits (p, p′) with p″ = (`accelerations`) (p, p′) and the mass, damping and stiffness matrices of p into blocks: V, row by row, and
+/// W = V⁻¹, column by column. `alike` gives the particles that are, where normal modes do not split them.
 pub(crate) fn split(
     accelerations: &[Vec<f64>],
-    mass: &Matrix,
-    stiffness: &Matrix,
+    [mass, damping, stiffness]: [&Matrix; 3],
     alike: impl FnOnce() -> Vec<Alike>,
 ) -> Result<Spectral, EngineError> {
-    let Some(rigid) = RigidMotions::of(stiffness) else { return by_coordinates(accelerations, mass, stiffness, alike) };
-    let [mass, stiffness] = [rigid.form(mass, false), rigid.form(stiffness, true)];
+    let Some(rigid) = RigidMotions::of(stiffness, damping) else {
+        return by_coordinates(accelerations, mass, stiffness, alike);
+    };
+    let [mass, stiffness] = [rigid.mass(mass), rigid.stiffness(stiffness)];
     let mut split = by_coordinates(&rigid.accelerations(accelerations), &mass, &stiffness, alike)?;
     rigid.back(&mut split.from_blocks, &mut split.to_blocks);
     Ok(split)

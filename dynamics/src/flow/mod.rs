@@ -44,8 +44,7 @@ use crate::flow::steps::Steps;
 use crate::flow::way::{MOST_BLOCKS, Ways};
 use crate::system::{Contact, DrivePhase, HybridSystem, Particle};
 
-/// Distance of a block's eigenvalue from the drive's, as a share of that, below which the steady answer is more than ten times what the
-/// drive does in a cycle.
+/// Distance of a block's eigenvalue from the drive's, as a share of that, below which the steady answer is above ten times F/(m ω²).
 const NEAR_RESONANCE: f64 = 0.05;
 
 /// One contact state, ready to be propagated.

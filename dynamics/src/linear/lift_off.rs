@@ -13,6 +13,9 @@ use super::range;
 use crate::response::extremes::Extremes;
 use crate::system::HybridSystem;
 
+/// A loss below this share of what there is to lose is rounding.
+const NOTHING: f64 = 1e-13;
+
 /// The share of the drive's present strength; `None` where none takes a particle off its floor.
 pub(super) fn share(system: &HybridSystem, Steady { flow, cycle, state }: &Steady) -> Option<f64> {
     let shares = guards(system, flow).into_iter().filter_map(|guard| {
@@ -21,7 +24,7 @@ pub(super) fn share(system: &HybridSystem, Steady { flow, cycle, state }: &Stead
         let at_rest = guard.of(guard.row.gravity.p0);
         let lowest = extremes.displacement.into_iter().map(|value| guard.of(value)).fold(f64::INFINITY, f64::min);
         let loss = at_rest - lowest;
-        (at_rest > 0.0 && loss > 0.0).then(|| at_rest / loss)
+        (at_rest > 0.0 && loss > NOTHING * at_rest).then(|| at_rest / loss)
     });
     shares.reduce(f64::min)
 }

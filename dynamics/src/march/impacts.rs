@@ -70,7 +70,7 @@ impl<E: Effects> March<'_, E> {
             }
             if !tied.is_empty() {
                 self.clarity.ties += tied.len() as u64;
-                // One after the other they would leave with other speeds.
+                // One after the other they may leave with other speeds.
                 self.clarity.margin = 0.0;
             }
             arrived.extend(tied);

@@ -88,9 +88,11 @@ impl Run<'_> {
         guards
     }
 
-    /// `let_go`: the order of the gap of a particle that is let go; its push vanished by itself, or the force has jumped.
-    pub(super) fn cross(&mut self, j: usize, end: End, let_go: usize) -> Result<(), PreciseError> {
+    pub(super) fn cross(&mut self, j: usize, end: End) -> Result<(), PreciseError> {
         self.phase = None;
+        // What is let go when its push vanishes by itself begins with t³, after a jump with t².
+        let let_go = if self.goes_on { 3 } else { 2 };
+        self.goes_on &= matches!(end, End::LetGo);
         match (end, self.touches[j]) {
             (End::Squeezed, _) => return Err(PreciseError::Squeezed { particle: j, cycle: self.cycle }),
             (End::Meets(ceiling), _) => {

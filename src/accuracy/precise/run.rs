@@ -92,6 +92,8 @@ pub(super) struct Run<'a> {
     pub(super) fresh: Vec<Option<(bool, bool, usize)>>,
     /// Who has just struck what it may not be held by.
     pub(super) struck: Option<usize>,
+    /// No acceleration has jumped at this instant.
+    pub(super) goes_on: bool,
     pub(super) phase: Option<Phase>,
     sums: Vec<[[Double; 3]; 2]>,
     pub(super) response: Response,
@@ -119,6 +121,7 @@ impl<'a> Run<'a> {
             touches: vec![Touch::Flight; count],
             fresh: vec![None; count],
             struck: None,
+            goes_on: false,
             phase: None,
             sums: vec![[[Double::ZERO; 3]; 2]; rows],
             response: Response { observed: vec![Observed::default(); rows], ..Response::default() },
@@ -189,6 +192,7 @@ impl<'a> Run<'a> {
             for (i, tick) in ticks.iter().enumerate() {
                 self.propagate_to(tick.time)?;
                 self.state.level = tick.level;
+                self.goes_on = false;
                 let kick = if cycle == 0 && i == 0 { self.options.kick * drive.scale() } else { 0.0 };
                 if tick.impulse + kick != 0.0 {
                     self.strike(tick.impulse + kick)?;
@@ -282,11 +286,12 @@ impl<'a> Run<'a> {
         self.arrive(&series, span);
         self.time = if first.is_none() && whole { Double::from(until) } else { self.time + span };
         if span.near() > 0.0 {
+            self.goes_on = true;
             self.fresh.fill(None);
             self.struck = None;
         }
         match first {
-            Some((_, j, end)) => self.cross(j, end, if span.near() > 0.0 { 3 } else { 2 }),
+            Some((_, j, end)) => self.cross(j, end),
             None => Ok(()),
         }
     }

@@ -6,12 +6,6 @@ use super::given::{AssumptionName, Given, Inputs, PlaceList};
 use super::parts::{ArrayOrder, ArrayRecipe, Part, RecipeError};
 use crate::scene::{Kind, Model, Point};
 
-/// Steps along a side in which the largest value of a shape is looked for.
-const STEPS: u32 = 20;
-/// Of its largest value, a shape has less than this at a support, where the sums of its terms cancel to their last digits. Where it is
-/// more, its own digits are left: a millionth of the length from a clamp.
-const ROUNDING: f64 = 1e-11;
-
 /// A place, one coordinate a side; none on a single mass.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct PlaceRecipe(pub Vec<Coordinate>);
@@ -84,22 +78,9 @@ impl<'a> Places<'a> {
         self.checked(self.coordinates(place, part)?, part)
     }
 
-    /// The structure moves there, in one of its modes at least, by more than rounding makes of nothing.
+    /// As [`Model::moves`].
     pub(super) fn moves(&self, at: Point) -> bool {
-        let largest = |shape: &[f64]| shape.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
-        let here = largest(&self.shape(at));
-        // All shapes are of order one somewhere: only what is far below that is looked at.
-        self.sides.is_empty() || here > 1e-6 || {
-            let steps = |side: usize| if side < self.sides.len() { STEPS } else { 0 };
-            let point = |i: u32, j: u32| {
-                let along = |side: usize, i: u32| {
-                    self.sides.get(side).map_or(0.0, |length| length * f64::from(i) / f64::from(STEPS))
-                };
-                Point { x: along(0, i), y: along(1, j) }
-            };
-            let anywhere = (0..=steps(0)).flat_map(|i| (0..=steps(1)).map(move |j| point(i, j)));
-            here > ROUNDING * anywhere.map(|at| largest(&self.shape(at))).fold(0.0, f64::max)
-        }
+        self.model.moves(at)
     }
 
     /// Displacement at a point by the coordinates of the structure.

@@ -2,6 +2,12 @@
 
 use crate::dynamics::Matrix;
 
+/// Steps along a side in which the largest value of a shape is looked for.
+const STEPS: u32 = 20;
+/// Of its largest value, a shape has less than this at a support, where the sums of its terms cancel to their last digits. Where it is
+/// more, its own digits are left: a millionth of the length from a clamp.
+const ROUNDING: f64 = 1e-11;
+
 /// A point of a structure, m along its sides; what a structure has no side for is not looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Point {
@@ -51,6 +57,25 @@ pub trait Model {
 
     /// Lengths of the sides, m; none for a single mass.
     fn sides(&self) -> Vec<f64>;
+
+    /// The structure moves there, in one of its modes at least, by more than rounding makes of nothing.
+    fn moves(&self, at: Point) -> bool {
+        let sides = self.sides();
+        let largest = |at: Point| self.shape(at).iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        let here = largest(at);
+        // All shapes are of order one somewhere: only what is far below that is looked at.
+        sides.is_empty() || here > 1e-6 || {
+            let steps = |side: usize| if side < sides.len() { STEPS } else { 0 };
+            let point = |i: u32, j: u32| {
+                let along = |side: usize, i: u32| {
+                    sides.get(side).map_or(0.0, |length| length * f64::from(i) / f64::from(STEPS))
+                };
+                Point { x: along(0, i), y: along(1, j) }
+            };
+            let anywhere = (0..=steps(0)).flat_map(|i| (0..=steps(1)).map(move |j| point(i, j)));
+            here > ROUNDING * anywhere.map(largest).fold(0.0, f64::max)
+        }
+    }
 
     /// Natural frequencies of this model, undamped, rad/s, rising.
     fn natural_frequencies(&self) -> Vec<f64>;
