@@ -1,6 +1,6 @@
 //! One mistake is told once, and what would go wrong later is told at once.
 
-use shotdamp::experiment::{Assumptions, parse_experiment};
+use shotdamp::experiment::{Assumptions, parse_assumptions, parse_experiment};
 
 const BEAM: &str = "
 title: t
@@ -50,3 +50,52 @@ fn no_figure_takes_the_name_of_the_drawing_of_the_scene() {
     assert_eq!(named("scene"), ["`scene` names the drawing of the scene"]);
     assert_eq!(named("gaps"), [""; 0]);
 }
+
+/// What is marked of the beam with one thing changed, by the only mistake.
+fn marked(from: &str, to: &str) -> String {
+    assert!(BEAM.contains(from), "{from}");
+    let text = BEAM.replacen(from, to, 1);
+    let read = parse_experiment(&"x".parse().unwrap(), "mine.yaml", &text, &Assumptions::default());
+    let problems = read.unwrap_err();
+    assert_eq!(problems.list.len(), 1, "{problems}");
+    let place = problems.list[0].place.unwrap();
+    text[place.offset..place.offset + place.bytes].to_owned()
+}
+
+#[test]
+fn a_value_that_physics_refuses_is_marked_itself() {
+    for (from, to, wrong) in [
+        ("frequency_ratio: 1", "frequency_ratio: 0.0", "0.0"),
+        ("impulse_train: {at: 1", "impulse_train: {at: 0.000", "0.000"),
+        ("modes: 4", "modes: 500", "500"),
+        ("modes: 4", "modes: 00", "00"),
+        ("particle_share: 0.5", "particle_share: 1.5", "1.5"),
+        ("gap_ratio: 50", "gap: -5 mm", "-5 mm"),
+        ("dampers: [{at: 1", "dampers: [{at: 2 m", "2 m"),
+    ] {
+        assert_eq!(marked(from, to), wrong, "{to}");
+    }
+    let massless = "mass_ratio: 0.00, particle_share: 0.5, gap_ratio: 50, floor: {resilient: {stiffness: tuned, damping_ratio: 0.1}}}]";
+    let damper = "mass_ratio: 0.05, particle_share: 0.5, gap_ratio: 50, floor: {rigid: {restitution: 0.6}}}]";
+    assert_eq!(marked(damper, massless), "0.00");
+}
+
+#[test]
+fn a_swept_value_that_physics_refuses_is_marked_in_the_sweep_under_its_own_name() {
+    let train = "force_ratio: swept, frequency_ratio: 1}}\nsweep: {force_ratio: [1, 2]}";
+    let swept = "force_ratio: swept, frequency_ratio: swept}}\nsweep: {force_ratio: [1, 2], frequency_ratio: [0, 1]}";
+    assert_eq!(marked(train, swept), "frequency_ratio");
+}
+
+#[test]
+#[test]
+#[test]
+fn an_anchor_is_marked_itself_and_its_alias_once() {
+    assert_eq!(marked("about: a", "about: &x a"), "&x");
+    let text = BEAM.replace("title: t", "title: &x t").replace("about: a", "about: *x");
+    let problems = parse_experiment(&"x".parse().unwrap(), "mine.yaml", &text, &Assumptions::default()).unwrap_err();
+    let said: Vec<&str> = problems.list.iter().map(|one| one.message.as_str()).collect();
+    assert_eq!(said, ["anchors (`&name`) are not accepted", "aliases (`*name`) are not accepted"]);
+}
+
+#[test]
