@@ -504,6 +504,10 @@ pub(super) fn assumption(
     place: impl FnOnce() -> String,
 ) -> Option<Option<AssumptionName>> {
     match at {
+        At::Node(Node { value: Value::Scalar(word), .. }, _) if word == "assumed" => {
+            let help = "write a value, or `{assumed: NAME}`: no default can be declared for it";
+            Some(at.report(format!("no assumption stands for {}", place()), Some(help.into())))
+        }
         At::Node(node, findings) => names_assumption(node).then(|| named(sheet, node, takes, &place(), findings)),
         At::Sketch(it) => {
             it.add(assumptions::assumed(it, sheet, takes));

@@ -88,6 +88,14 @@ fn a_swept_value_that_physics_refuses_is_marked_in_the_sweep_under_its_own_name(
 }
 
 #[test]
+fn plain_assumed_where_no_assumption_can_stand_by_default_says_what_to_write() {
+    for key in ["mass_ratio: 0.05", "gap_ratio: 50", "frequency_ratio: 1", "rayleigh: 5e-5", "restitution: 0.6"] {
+        let (name, _) = key.split_once(':').unwrap();
+        let said = said(key, &format!("{name}: assumed"));
+        assert_eq!(said, ["no assumption stands for this key"], "{key}");
+    }
+}
+
 #[test]
 #[test]
 fn an_anchor_is_marked_itself_and_its_alias_once() {
