@@ -97,6 +97,13 @@ fn plain_assumed_where_no_assumption_can_stand_by_default_says_what_to_write() {
 }
 
 #[test]
+fn the_value_of_an_assumption_is_no_other_assumption() {
+    let text = "a: {quantity: ratio, value: {assumed: b}, reason: r}\nb: {quantity: ratio, value: 1, reason: r}\n";
+    let problems = parse_assumptions("assumptions.yaml", text).unwrap_err();
+    assert_eq!(problems.list.len(), 1, "{problems}");
+    assert_eq!(problems.list[0].message, "the value of an assumption cannot be another assumption");
+}
+
 #[test]
 fn an_anchor_is_marked_itself_and_its_alias_once() {
     assert_eq!(marked("about: a", "about: &x a"), "&x");
