@@ -24,7 +24,9 @@ macro_rules! mapping {
 
         impl $name {
             pub(crate) fn read(at: $crate::experiment::At<'_>) -> Option<Self> {
-                let keys = at.keys($what)?;
+                let all = [$(($crate::reference::mapping::key!($field $($key)?), stringify!($how))),+];
+                let required = all.iter().filter(|(_, how)| *how == "required").map(|(key, _)| *key);
+                let keys = at.keys_with($what, &required.collect::<Vec<_>>())?;
                 $(let $field = keys.$how($crate::reference::mapping::key!($field $($key)?), $about, $($with),+);)+
                 keys.close()?;
                 let read = Self { $($field: $field?,)+ };
