@@ -180,7 +180,11 @@ impl<'t> ExperimentReader<'t> {
             }
             _ => None,
         };
-        let figures = FigureReader { findings: self.findings, columns: columns.as_ref() }.figures(&keys);
+        let cases = match (&orbit, &sweep) {
+            (Some(None), Some(Some(sweep))) => sweep.cases.as_slice(),
+            _ => &[],
+        };
+        let figures = FigureReader { findings: self.findings, columns: columns.as_ref(), cases }.figures(&keys);
         keys.close();
 
         let checks = Checks { findings: self.findings, assumptions: self.assumptions };

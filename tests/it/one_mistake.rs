@@ -114,3 +114,9 @@ fn an_anchor_is_marked_itself_and_its_alias_once() {
 }
 
 #[test]
+fn a_range_of_an_axis_that_holds_nothing_of_the_sweep_is_told_before_anything_runs() {
+    let of =
+        |range: &str| said("figure: {x: force_ratio", &format!("figure: {{x: {{column: force_ratio, range: {range}}}"));
+    assert_eq!(of("[1000, 2000]"), ["nothing of `force_ratio` lies in this range"]);
+    assert_eq!(of("[0.5, 1.5]"), [""; 0]);
+}
