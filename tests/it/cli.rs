@@ -455,3 +455,13 @@ fn explain_tells_what_an_entry_hangs_on_and_simulates_nothing() {
     let unknown = shotdamp(&desk, &["explain", "ch3-stop/at-three"]);
     assert!(unknown.code == 2 && unknown.err.contains("there is no entry `ch3-stop/at-three`"), "{}", unknown.err);
 }
+
+#[test]
+#[test]
+fn a_study_without_experiments_is_answered_with_the_command_that_begins_one() {
+    let folder = tempfile::TempDir::new().unwrap();
+    fs::create_dir(folder.path().join("experiments")).unwrap();
+    let list = Command::cargo_bin("shotdamp").unwrap().current_dir(&folder).arg("list").output().unwrap();
+    let said = String::from_utf8_lossy(&list.stderr).into_owned();
+    assert!(said.contains("there are no experiments yet: `shotdamp new ID` begins one"), "{said}");
+}
