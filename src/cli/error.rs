@@ -18,7 +18,7 @@ pub(super) enum CliError {
     NoStudyAt(PathBuf),
     #[error("the current folder cannot be found: {0}; change to one that exists, or name a study with --root")]
     Here(#[source] io::Error),
-    #[error("there are no experiments yet: write one into experiments/")]
+    #[error("there are no experiments yet: `shotdamp new ID` begins one in experiments/")]
     NoExperiments,
     #[error("no experiment matches `{pattern}`; {hint}")]
     NoMatch { pattern: String, hint: String },

@@ -11,6 +11,7 @@ use super::keys::Key;
 use super::quantity::Dimension;
 use super::reader::{above_zero, count, list, no_such, ratio, scalar, unknown};
 use super::recipe::{AssumptionName, AssumptionValue, Slot};
+use super::scene::names_assumption;
 use super::schema::{assumptions, parts};
 use super::stated::{STATED, read_chapters};
 use super::word::{from_word, words};
@@ -219,6 +220,14 @@ fn read_quantity(at: At<'_>) -> Option<Quantity> {
 }
 
 pub(super) fn read_value(node: &Node, kind: &AssumptionKind, findings: &Findings) -> Option<AssumptionValue> {
+    if names_assumption(node) {
+        let help = "write the value itself; a scene that takes the other assumption names that one in its place";
+        return findings.report(
+            node.span,
+            "the value of an assumption cannot be another assumption",
+            Some(help.into()),
+        );
+    }
     if !kind.readings.is_empty() {
         let word = match (&node.value, kind.quantity) {
             (Value::Scalar(_), _) | (_, None) => scalar(node, findings)?,

@@ -340,8 +340,13 @@ impl<'t> At<'t> {
 
     /// Keys with values; `what` names the mapping in messages (`a damper`).
     pub fn keys(self, what: &'static str) -> Option<Keys<'t>> {
+        self.keys_with(what, &[])
+    }
+
+    /// The same; where no keys stand here, the message shows those that are `required`.
+    pub fn keys_with(self, what: &'static str, required: &[&'static str]) -> Option<Keys<'t>> {
         match self {
-            Self::Node(node, findings) => Keys::open(node, what, findings),
+            Self::Node(node, findings) => Keys::open(node, what, required, findings),
             Self::Sketch(sketch) => Some(Keys::outline(sketch)),
         }
     }

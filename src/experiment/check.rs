@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::recipe::{AssumptionName, Assumptions, ExcitationKind, Parameter, ParameterValue, Part, RecipeError};
+use super::recipe::{AssumptionName, Assumptions, ExcitationKind, Parameter, ParameterValue, Part};
 use crate::dynamics::{EngineError, Until};
 use crate::measure::{CycleSpec, EnergySpec, Measure, Settings, ShapeSpec, SolverChoice, Tolerance, TraceSpec, Under};
 use crate::scene::Scene;
@@ -13,6 +13,7 @@ use super::definition::{Case, Drawing, Experiment, FigureSpec, Maximise, Panel, 
 use super::diagnostic::{Findings, Span};
 use super::optimise::Optimise;
 use super::refined::{Refinement, curves};
+use super::refusal::{Meant, Places, Refusal};
 use super::scene::ReadScene;
 use super::starts_reader::ReadStarts;
 use super::sweep::ReadSweep;
@@ -437,8 +438,8 @@ impl Checks<'_> {
         }
     }
 
-    /// Resolves every case; `place` says where a parameter is swept, or else where a part of the scene stands, or all of it.
-    pub fn scenes(&self, experiment: &Experiment, place: impl Fn(Option<Parameter>, Option<Part>) -> Span) {
+    /// Resolves every case. A mistake is reported where the value that is refused is swept, or else where the scene has it.
+    pub fn scenes(&self, experiment: &Experiment, places: &Places<'_>) {
         let mut met = BTreeSet::new();
         let tried: Vec<_> = experiment.cases.iter().map(|case| (case, self.scene(experiment, case))).collect();
         // A sweep may pass over a support: that row fails with this reason, and no other.
@@ -455,14 +456,7 @@ impl Checks<'_> {
                 } else {
                     format!("{} (at {description})", refusal.message)
                 };
-                // What a sweep has made of a part is at the sweep; what the file says of it, at the part.
-                let swept = case.values.iter().map(|(parameter, _)| *parameter);
-                let of_part = |parameter: &Parameter| {
-                    let same = |part: Part| parameter.part() == Some(part.kind()) && parameter.words().is_empty();
-                    refusal.part.is_none_or(same)
-                };
-                let parameter = refusal.parameter.or_else(|| swept.into_iter().find(of_part));
-                self.findings.wrong::<()>(place(parameter, refusal.part), message);
+                self.findings.wrong::<()>(places.of(&refusal.place, experiment, case), message);
             }
         }
     }
@@ -516,41 +510,6 @@ fn sets_or_leaves_out(case: &Case, parameter: Parameter) -> bool {
 /// Parameters that move the force.
 const MOVE_THE_FORCE: [Parameter; 3] = [Parameter::ForceX, Parameter::ForceY, Parameter::Place];
 
-/// Why a case cannot run.
-#[derive(Default)]
-struct Refusal {
-    message: String,
-    parameter: Option<Parameter>,
-    /// The part of the scene that is meant.
-    part: Option<Part>,
-    /// It stands where nothing moves.
-    still: bool,
-}
-
-impl From<String> for Refusal {
-    fn from(message: String) -> Self {
-        Self { message, ..Self::default() }
-    }
-}
-
-impl From<RecipeError> for Refusal {
-    fn from(error: RecipeError) -> Self {
-        match error {
-            RecipeError::NothingToVary { parameter, what } => Self {
-                message: format!("`{}` is swept, but the scene has {what}", word_of(parameter)),
-                parameter: Some(parameter),
-                ..Self::default()
-            },
-            error @ RecipeError::Assumption(_) => error.to_string().into(),
-            RecipeError::OutOfRange(message) => message.into(),
-            RecipeError::Part { part, message } => Self { message, part: Some(part), ..Self::default() },
-            error @ RecipeError::Still { part, .. } => {
-                Self { message: error.to_string(), part: Some(part), still: true, ..Self::default() }
-            }
-        }
-    }
-}
-
 /// Why a run cannot go in steps.
 #[derive(Debug, thiserror::Error)]
 enum StepError {
@@ -591,7 +550,8 @@ fn remembers(scene: &Scene, case: &Case, experiment: &Experiment) -> Result<(), 
 /// The corners of a box of random starts are starts.
 fn boxed(scene: &Scene, experiment: &Experiment) -> Result<(), Refusal> {
     let Some(starts) = &experiment.starts else { return Ok(()) };
-    let refuse = |message: String| Refusal { message, part: Some(Part::Start), ..Refusal::default() };
+    let refuse =
+        |message: String| Refusal { message, place: Meant::Part(Part::Start, Vec::new()), ..Refusal::default() };
     if starts.endless(scene).is_some() {
         return Err(refuse("a share of the gap clearance needs a ceiling, and this gap is infinite".into()));
     }

@@ -47,7 +47,7 @@ impl<'t> Choice<'t> {
     /// The mapping behind the colon.
     pub fn keys(&self, what: &'static str) -> Option<Keys<'t>> {
         match self {
-            Self::Read(choice, findings) => Keys::open(choice.values(findings)?, what, findings),
+            Self::Read(choice, findings) => Keys::open(choice.values(findings)?, what, &[], findings),
             Self::Sketch(_, content, _) => Some(Keys::outline(content)),
         }
     }

@@ -5,7 +5,7 @@ use serde_json::json;
 use super::at::At;
 use super::columns::{Columns, Role};
 use super::definition::{
-    AnimationSpec, Axis, AxisScale, AxisUnit, Band, Drawing, FigureSpec, Level, Only, Panel, PeakMarks, Strip,
+    AnimationSpec, Axis, AxisScale, AxisUnit, Band, Case, Drawing, FigureSpec, Level, Only, Panel, PeakMarks, Strip,
 };
 use super::diagnostic::{Findings, Span};
 use super::keys::Keys;
@@ -13,7 +13,7 @@ use super::quantity::worth;
 use super::reader::{number, scalar};
 use super::schema::parts;
 use super::sweep::{NAME, is_name};
-use super::word::word_of;
+use super::word::{from_word, word_of};
 use super::yaml::Value;
 use crate::measure::Measure;
 
@@ -24,6 +24,8 @@ pub(crate) const SCENE_DRAWING: &str = "scene";
 pub(super) struct FigureReader<'t> {
     pub findings: &'t Findings,
     pub columns: Option<&'t Columns>,
+    /// The cases of the sweep, where they are known.
+    pub cases: &'t [Case],
 }
 
 impl FigureReader<'_> {
@@ -203,6 +205,14 @@ impl FigureReader<'_> {
         at.named("x_axis", "A column, or {column, scale, label, unit, reach, range}", |at| self.any_axis(at, true))
     }
 
+    /// The ends of what a sweep gives a column.
+    fn reach_of(&self, column: &str) -> Option<[f64; 2]> {
+        let parameter = from_word(column)?;
+        let numbers = || self.cases.iter().filter_map(|case| case.number(parameter));
+        let [low, high] = [numbers().reduce(f64::min)?, numbers().reduce(f64::max)?];
+        Some([low, high])
+    }
+
     fn any_axis(&self, at: At<'_>, may_be_a_part: bool) -> Option<(Axis, Option<Role>)> {
         let plain = |at: At<'_>| {
             let (column, span) = column_name(at)?;
@@ -222,7 +232,7 @@ impl FigureReader<'_> {
         let reach = keys.optional("reach", "From one number to a larger one, at least", read_reach);
         let part = "From one number to a larger one: only what lies between them is drawn";
         let range = keys.optional_where(may_be_a_part, "range", part, read_reach);
-        let unit_at = keys.span_of("unit");
+        let (unit_at, range_at) = (keys.span_of("unit"), keys.span_of("range"));
         keys.close()?;
         let (column, span) = column?;
         let role = self.column(&column, span, |role| role != Role::Label)?;
@@ -237,6 +247,14 @@ impl FigureReader<'_> {
         let not_positive = |ends: &[f64; 2]| ends[0] <= 0.0;
         if axis.scale == AxisScale::Log && axis.reach.iter().chain(&axis.range).any(not_positive) {
             return at.wrong("a logarithmic axis reaches from a number above zero");
+        }
+        if let (Some([from, to]), Some(range_at), Some([low, high])) =
+            (axis.range, range_at, self.reach_of(&axis.column))
+            && (from > high || to < low)
+        {
+            let column = &axis.column;
+            let help = format!("`{column}` goes from {} to {} here", low / worth, high / worth);
+            return at.report_at(range_at, format!("nothing of `{column}` lies in this range"), Some(help));
         }
         Some((axis, role))
     }

@@ -23,9 +23,9 @@ pub(crate) enum Keys<'t> {
 pub(crate) type Key<'a> = (&'static str, &'a str);
 
 impl<'t> Keys<'t> {
-    /// Opens `node` as a mapping; `what` names it in messages (`a damper`).
-    pub fn open(node: &'t Node, what: &'static str, findings: &'t Findings) -> Option<Self> {
-        Fields::open(node, what, findings).map(Self::Read)
+    /// Opens `node` as a mapping; `what` names it in messages (`a damper`), which show the `required` keys where it is none.
+    pub fn open(node: &'t Node, what: &'static str, required: &[&'static str], findings: &'t Findings) -> Option<Self> {
+        Fields::open(node, what, required, findings).map(Self::Read)
     }
 
     pub fn outline(sketch: &'t Sketch<'t>) -> Self {
@@ -69,7 +69,14 @@ impl<'t> Keys<'t> {
     /// A part that must be there. `None`: reported.
     pub fn required<T>(&self, key: &'static str, about: &str, read: impl FnOnce(At<'_>) -> Option<T>) -> Option<T> {
         match self {
-            Self::Read(fields) => fields.required(key, |node| read(At::Node(node, fields.findings))),
+            Self::Read(fields) => match fields.get(key) {
+                Some(node) => read(At::Node(node, fields.findings)),
+                None => {
+                    let what = in_words(&Sketch::of(about, &RefCell::default(), read));
+                    fields.missing.borrow_mut().push((vec![key], what));
+                    None
+                }
+            },
             Self::Outline(sketch, object) => {
                 object.borrow_mut().require(key, part(sketch, about, read));
                 None
@@ -185,7 +192,7 @@ impl<'t> Keys<'t> {
         if let Self::Read(fields) = self
             && keys.iter().all(|key| fields.get(key).is_none())
         {
-            fields.missing.borrow_mut().push((keys.to_vec(), what));
+            fields.missing.borrow_mut().push((keys.to_vec(), what.to_owned()));
         }
         None
     }
@@ -262,18 +269,20 @@ pub(crate) struct Fields<'t> {
     what: &'static str,
     span: Span,
     asked: RefCell<Vec<&'static str>>,
-    /// Of each of these groups one key should have been there, which says so.
-    missing: RefCell<Vec<(Vec<&'static str>, &'static str)>>,
+    /// Of each of these groups one key should have been there, and what it would say.
+    missing: RefCell<Vec<(Vec<&'static str>, String)>>,
 }
 
 impl<'t> Fields<'t> {
-    fn open(node: &'t Node, what: &'static str, findings: &'t Findings) -> Option<Self> {
+    fn open(node: &'t Node, what: &'static str, required: &[&'static str], findings: &'t Findings) -> Option<Self> {
         let Value::Mapping(entries) = &node.value else {
-            return findings.report(
-                node.span,
-                format!("{what} is written as keys with values, not as {}", kind(node)),
-                Some("write `key: value` lines below it, or {key: value, key: value}".into()),
-            );
+            let message = format!("{what} is written as keys with values, not as {}", kind(node));
+            let help = if required.is_empty() {
+                "write `key: value` lines below it, or {key: value, key: value}".into()
+            } else {
+                format!("write {{{}: …}}", required.join(": …, "))
+            };
+            return findings.report(node.span, message, Some(help));
         };
         let span = node.span;
         Some(Self { findings, entries, what, span, asked: RefCell::default(), missing: RefCell::default() })
@@ -290,17 +299,6 @@ impl<'t> Fields<'t> {
             asked.push(key);
         }
         self.entries.iter().find(|entry| entry.key == key)
-    }
-
-    /// A part that must be there. `None`: reported.
-    fn required<T>(&self, key: &'static str, read: impl FnOnce(&'t Node) -> Option<T>) -> Option<T> {
-        match self.get(key) {
-            Some(node) => read(node),
-            None => {
-                self.missing.borrow_mut().push((vec![key], ""));
-                None
-            }
-        }
     }
 
     /// A part that may be absent. `None`: reported; `Some(None)`: absent.
@@ -329,7 +327,7 @@ impl<'t> Fields<'t> {
     fn exactly_one(&self, keys: &[&'static str]) -> Option<(&'static str, &'t Node)> {
         let given = self.at_most_one(keys)?;
         if given.is_none() {
-            self.missing.borrow_mut().push((keys.to_vec(), ""));
+            self.missing.borrow_mut().push((keys.to_vec(), String::new()));
         }
         given
     }
@@ -377,6 +375,20 @@ fn add_each<T>(
 
 fn names(keys: &[Key<'_>]) -> Vec<&'static str> {
     keys.iter().map(|(key, _)| *key).collect()
+}
+
+/// The words that a description accepts, and the keys of which one does: "`highest` or `{number: …}`". Empty if it takes no words.
+fn in_words(schema: &Schema) -> String {
+    let forms = schema["anyOf"].as_array().map_or(std::slice::from_ref(schema), Vec::as_slice);
+    let words = |form: &Schema| form["enum"].as_array().cloned().unwrap_or_default();
+    let words: Vec<String> =
+        forms.iter().flat_map(words).filter_map(|word| Some(format!("`{}`", word.as_str()?))).collect();
+    if words.is_empty() {
+        return String::new();
+    }
+    let keys = forms.iter().filter_map(|form| form["properties"].as_object());
+    let keys = keys.flat_map(|keys| keys.keys().map(|key| format!("`{{{key}: …}}`")));
+    words.into_iter().chain(keys).collect::<Vec<_>>().join(" or ")
 }
 
 /// Beside a reference a description would not count.

@@ -37,6 +37,7 @@ mod range;
 mod reader;
 mod recipe;
 mod refined;
+mod refusal;
 mod run;
 mod scaffold;
 mod scene;

@@ -54,6 +54,9 @@ pub(super) fn kind(node: &Node) -> &'static str {
 pub(super) fn scalar<'t>(node: &'t Node, findings: &Findings) -> Option<&'t str> {
     match &node.value {
         Value::Scalar(text) => Some(text),
+        Value::Mapping(entries) if matches!(entries.as_slice(), [entry] if entry.key == "assumed") => {
+            no_assumption(findings, node.span)
+        }
         Value::Mapping(entries)
             if let [entry] = entries.as_slice()
                 && closest(&entry.key, ["assumed"]).is_some() =>
@@ -85,11 +88,19 @@ pub(super) fn boolean(node: &Node, findings: &Findings) -> Option<bool> {
     }
 }
 
+/// Reports that a value is wanted where an assumption is named.
+fn no_assumption<T>(findings: &Findings, at: Span) -> Option<T> {
+    findings.report(at, "no assumption can stand here", Some("write a value".into()))
+}
+
 fn measured(node: &Node, findings: &Findings, parsed: Result<f64, QuantityError>) -> Option<f64> {
     if node.value.is_swept() {
         let parameters = words::<Parameter>().iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
         let help = Some(format!("give it a value here; a sweep varies {parameters}"));
         return findings.report(node.span, "no sweep varies this key", help);
+    }
+    if matches!(&node.value, Value::Scalar(word) if word == "assumed") {
+        return no_assumption(findings, node.span);
     }
     parsed.map_err(|error| findings.report::<()>(node.span, error.to_string(), error.help())).ok()
 }

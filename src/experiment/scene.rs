@@ -14,8 +14,8 @@ use super::keys::Keys;
 use super::quantity::{Dimension, parse_number};
 use super::recipe::{
     AssumptionName, Assumptions, Carried, ContactDampingConstant, ContactDampingRatio, ContactDampingRecipe,
-    DamperRecipe, Filling, FloorStiffness, GapRecipe, Given, MassReading, MassRecipe, MeanRatio, Parameter, Part,
-    Recipe, Reference, Slot, StiffnessRecipe, StopRecipe, SurfaceRecipe, SweptSlots, WallRecipe,
+    DamperRecipe, Filling, FloorStiffness, GapRecipe, Given, MassReading, MassRecipe, MeanRatio, Parameter, Recipe,
+    Reference, Slot, StiffnessRecipe, StopRecipe, SurfaceRecipe, SweptSlots, WallRecipe,
 };
 use super::schema::assumptions;
 use super::structure::read_structure;
@@ -36,8 +36,6 @@ pub(super) struct ReadScene {
     pub swept: Vec<(Parameter, Span)>,
     /// Where it says that a gap is optimised.
     pub optimised: Vec<Span>,
-    /// Where each part stands.
-    pub parts: Vec<(Part, Span)>,
 }
 
 /// Reads what stands under `scene`.
@@ -47,7 +45,6 @@ pub(super) fn read_scene(at: At<'_>, assumptions: &Assumptions) -> Option<ReadSc
         unknown,
         swept: RefCell::default(),
         optimised: RefCell::default(),
-        parts: RefCell::default(),
     };
     if let At::Sketch(it) = at {
         describe(it, |at, kind| reader(kind).recipe(at));
@@ -55,12 +52,7 @@ pub(super) fn read_scene(at: At<'_>, assumptions: &Assumptions) -> Option<ReadSc
     }
     let reader = reader(KINDS[0]);
     let recipe = reader.recipe(at)?;
-    Some(ReadScene {
-        recipe,
-        swept: reader.swept.into_inner(),
-        optimised: reader.optimised.into_inner(),
-        parts: reader.parts.into_inner(),
-    })
+    Some(ReadScene { recipe, swept: reader.swept.into_inner(), optimised: reader.optimised.into_inner() })
 }
 
 /// What dampers and excitation may say depends on the structure: a schema asks which it is.
@@ -84,7 +76,6 @@ pub(super) struct SceneReader<'t> {
     unknown: &'static Kind,
     pub(super) swept: RefCell<Vec<(Parameter, Span)>>,
     optimised: RefCell<Vec<Span>>,
-    pub(super) parts: RefCell<Vec<(Part, Span)>>,
 }
 
 pub(super) const AT: &str = "at";
@@ -93,10 +84,8 @@ impl SceneReader<'_> {
     fn recipe(&self, at: At<'_>) -> Option<Recipe> {
         let keys = at.keys("the scene")?;
         let vibrating = "The vibrating structure";
-        let structure = keys.required("structure", vibrating, |at| {
-            self.parts.borrow_mut().push((Part::Structure, at.span()));
-            at.named("structure", vibrating, |at| read_structure(at, self))
-        });
+        let structure =
+            keys.required("structure", vibrating, |at| at.named("structure", vibrating, |at| read_structure(at, self)));
         // What dampers and excitation may say depends on the structure, also on one that has a mistake of its own.
         let named = || at.is_sketch().then_some(self.unknown).or_else(|| kind_named(keys.get("structure")?));
         let Some(kind) = structure.as_ref().map(|structure| structure.kind).or_else(named) else {
@@ -118,16 +107,10 @@ impl SceneReader<'_> {
         let mean_ratio =
             keys.optional("mean_ratio", Slot::MeanRatio.about(), |at| self.reading(at, Slot::MeanRatio, kind));
         let dampers = keys.optional("dampers", "The dampers", |at| self.dampers(at, kind));
-        let excitation = keys.required("excitation", "What drives the structure", |at| {
-            self.parts.borrow_mut().push((Part::Excitation, at.span()));
-            self.excitation(at, kind)
-        });
+        let excitation = keys.required("excitation", "What drives the structure", |at| self.excitation(at, kind));
         let equilibrium = "Initial conditions; static equilibrium without them";
         let start = keys.optional("start", equilibrium, |at| self.start(at));
-        let observe = keys.optional("observe", "Where the motion is observed", |at| {
-            self.parts.borrow_mut().push((Part::Observe, at.span()));
-            self.observe(at, kind)
-        });
+        let observe = keys.optional("observe", "Where the motion is observed", |at| self.observe(at, kind));
         keys.close()?;
         Some(Recipe {
             structure: structure?.recipe,
@@ -155,8 +138,6 @@ impl SceneReader<'_> {
                 if items.len() > MOST_DAMPERS {
                     return at.wrong(format!("{} dampers: {MOST_DAMPERS} at most", items.len()));
                 }
-                let each = items.iter().enumerate().map(|(index, item)| (Part::Damper(index), item.span));
-                self.parts.borrow_mut().extend(each);
                 at.list(damper)
             }
             At::Node(..) => at.list(damper),
@@ -523,6 +504,10 @@ pub(super) fn assumption(
     place: impl FnOnce() -> String,
 ) -> Option<Option<AssumptionName>> {
     match at {
+        At::Node(Node { value: Value::Scalar(word), .. }, _) if word == "assumed" => {
+            let help = "write a value, or `{assumed: NAME}`: no default can be declared for it";
+            Some(at.report(format!("no assumption stands for {}", place()), Some(help.into())))
+        }
         At::Node(node, findings) => names_assumption(node).then(|| named(sheet, node, takes, &place(), findings)),
         At::Sketch(it) => {
             it.add(assumptions::assumed(it, sheet, takes));

@@ -3,7 +3,6 @@
 use super::at::At;
 use super::quantity::Dimension;
 use super::reader::unknown;
-use super::recipe::Part;
 use super::scene::SceneReader;
 use super::schema::parts::word;
 use super::yaml::Value;
@@ -12,7 +11,6 @@ use crate::scene::{ParticleStart, Start};
 impl SceneReader<'_> {
     /// `{displacement: 2 mm, velocity: 0.1 m/s, particles: [{height: 10 mm, velocity: -1 m/s}, on_floor]}`.
     pub(super) fn start(&self, at: At<'_>) -> Option<Start> {
-        self.parts.borrow_mut().push((Part::Start, at.span()));
         let keys = at.keys("a start")?;
         let displacement =
             keys.optional("displacement", "Displacement of the mass", |at| at.quantity(Dimension::Length));

@@ -19,11 +19,12 @@ use super::lists::{read_each_cycle, read_energies, read_shape, read_tolerances, 
 use super::looked_for::{read_maximise, read_onset};
 use super::optimise::Optimise;
 use super::optimise_reader::{ReadOptimise, read_optimise};
-use super::recipe::{Assumptions, Parameter, ParameterValue, Part, Recipe};
+use super::recipe::{Assumptions, Parameter, ParameterValue, Recipe};
+use super::refusal::Places;
 use super::run::read_run;
 use super::scene::{ReadScene, read_scene};
 use super::schema;
-use super::starts_reader::{ReadStarts, read_starts};
+use super::starts_reader::read_starts;
 use super::stated::{STATED, read_statements, without_source};
 use super::sweep::{ReadSweep, read_sweep};
 use super::word::word_of;
@@ -179,7 +180,11 @@ impl<'t> ExperimentReader<'t> {
             }
             _ => None,
         };
-        let figures = FigureReader { findings: self.findings, columns: columns.as_ref() }.figures(&keys);
+        let cases = match (&orbit, &sweep) {
+            (Some(None), Some(Some(sweep))) => sweep.cases.as_slice(),
+            _ => &[],
+        };
+        let figures = FigureReader { findings: self.findings, columns: columns.as_ref(), cases }.figures(&keys);
         keys.close();
 
         let checks = Checks { findings: self.findings, assumptions: self.assumptions };
@@ -290,16 +295,13 @@ impl<'t> ExperimentReader<'t> {
             Cases::ToTry(_) if self.findings.any() => {}
             Cases::ToTry(on_untried) => on_untried(&experiment),
         }
-        let parts = scene.parts;
-        checks.scenes(&experiment, |parameter, part| {
-            let swept = parameter.and_then(|parameter| places.get(&parameter).copied());
-            let of_starts = starts.as_ref().filter(|_| part == Some(Part::Start));
-            if let Some(ReadStarts { particles_at, .. }) = of_starts {
-                return *particles_at;
-            }
-            let at_part = || parts.iter().find(|(known, _)| Some(*known) == part).map(|(_, span)| *span);
-            swept.or_else(at_part).unwrap_or(scene_at)
-        });
+        if let Some(maximise) = &experiment.maximise {
+            places.entry(maximise.over).or_insert(looked_for_at);
+        }
+        if let At::Node(scene, _) = at.under("scene") {
+            let starts = starts.as_ref().map(|read| read.particles_at);
+            checks.scenes(&experiment, &Places { scene, parameters: places, starts });
+        }
         checks.sensitivity(run.moved.as_ref(), &experiment, &self.assumptions.sheet);
         Some(experiment)
     }

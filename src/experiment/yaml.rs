@@ -68,7 +68,8 @@ pub(super) fn read_tree(text: &str, findings: &Findings) -> Option<Node> {
         flow_nesting_limit: DEEPEST,
         block_nesting_limit: DEEPEST,
     };
-    let mut tree = TreeReader { events: Parser::new_from_str_with_options(text, options), findings, depth: 0 };
+    let events = Parser::new_from_str_with_options(text, options);
+    let mut tree = TreeReader { events, text, findings, depth: 0, has_alias: false };
     let mut root = None;
     while let Some((event, span)) = tree.next()? {
         match event {
@@ -84,13 +85,19 @@ pub(super) fn read_tree(text: &str, findings: &Findings) -> Option<Node> {
             first => root = Some(tree.node((first, span), None)?),
         }
     }
+    // What stands for an alias is not there: all that misses it would be the same mistake again.
+    if tree.has_alias {
+        return None;
+    }
     root.or_else(|| findings.wrong(Span::default(), "the file is empty"))
 }
 
 struct TreeReader<'f, I> {
     events: I,
+    text: &'f str,
     findings: &'f Findings,
     depth: usize,
+    has_alias: bool,
 }
 
 impl<'t, I> TreeReader<'_, I>
@@ -137,6 +144,7 @@ where
                     "aliases (`*name`) are not accepted",
                     Some("write the value out where it is used".into()),
                 );
+                self.has_alias = true;
                 (Value::Nothing, span)
             }
             _ => return self.findings.wrong(span, "a value is expected here"),
@@ -203,13 +211,22 @@ where
     fn refuse_properties(&self, span: Span, anchor: usize, tagged: bool) {
         if anchor != 0 {
             self.findings.report::<()>(
-                span,
+                self.before(span, '&'),
                 "anchors (`&name`) are not accepted",
                 Some("write the value out where it is used".into()),
             );
         }
         if tagged {
-            self.findings.wrong::<()>(span, "tags (`!name`) are not accepted");
+            self.findings.wrong::<()>(self.before(span, '!'), "tags (`!name`) are not accepted");
         }
+    }
+
+    /// The word that begins with `sign` before a value; the value itself if there is none.
+    fn before(&self, value: Span, sign: char) -> Span {
+        let before = self.text.get(..value.start).unwrap_or_default();
+        let begins = |at: usize| before[..at].ends_with(|c: char| c.is_whitespace() || "[{,".contains(c));
+        let Some((start, _)) = before.rmatch_indices(sign).find(|(at, _)| begins(*at)) else { return value };
+        let length = before[start..].find(char::is_whitespace).unwrap_or(before.len() - start);
+        Span { start, end: start + length }
     }
 }

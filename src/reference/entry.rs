@@ -35,7 +35,8 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 
 use super::extraction::Extraction;
-use super::mapping::{KnownTables, Seen, mapping};
+use super::known::KnownTables;
+use super::mapping::{Seen, mapping};
 use super::predicate::Predicate;
 use super::printed::Printed;
 use super::prose::Prose;
@@ -145,8 +146,8 @@ impl ReferenceFile {
     pub(crate) fn check_tables(&self, file: &str, text: &str, tables: &KnownTables<'_>) -> Result<(), Problems> {
         let findings = Findings::default();
         for entry in &self.entries {
-            Seen::of(&entry.rows).check(&self.experiment, tables, &findings);
-            entry.seen().check(&self.experiment, tables, &findings);
+            Seen::of(&entry.rows).check(&self.experiment, &Selection::default(), tables, &findings);
+            entry.seen().check(&self.experiment, &entry.rows, tables, &findings);
         }
         findings.finish(file, text, Some(()))
     }

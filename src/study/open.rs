@@ -196,17 +196,22 @@ impl Study {
             Some(planned.or(known).unwrap_or(true))
         };
         let text = |file: &str| self.texts.bytes(file).map(|bytes| String::from_utf8_lossy(bytes)).unwrap_or_default();
-        let refused = |file: &str, line: usize, mistake: String| {
-            Refused::Text(Problems::at(file, &text(file), Some((line as u64, 1)), mistake))
+        let refused = |file: &str, (line, column): (usize, usize), mistake: String| {
+            Refused::Text(Problems::at(file, &text(file), Some((line as u64, column as u64)), mistake))
         };
-        let problem = |file: &str, name: &str, mistake: fn(String) -> Lost| {
-            // Not in a longer name that begins alike.
-            let ends =
-                |rest: &str| !rest.starts_with(|next: char| next.is_alphanumeric() || next == '-' || next == '_');
-            let names = |line: &str| line.match_indices(name).any(|(at, _)| ends(&line[at + name.len()..]));
-            let line = text(file).lines().position(names).map_or(1, |line| line + 1);
-            refused(file, line, mistake(name.into()).to_string())
+        // From a line on, counted from 1.
+        let problem_from = |from: usize, file: &str, name: &str, mistake: fn(String) -> Lost| {
+            // Not in a longer name that begins or ends alike.
+            let joins = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+            let is_alone =
+                |line: &str, at: usize| !line[at + name.len()..].starts_with(joins) && !line[..at].ends_with(joins);
+            let place = text(file).lines().enumerate().skip(from - 1).find_map(|(index, line)| {
+                let (at, _) = line.match_indices(name).find(|(at, _)| is_alone(line, *at))?;
+                Some((index + 1, line[..at].chars().count() + 1))
+            });
+            refused(file, place.unwrap_or((from, 1)), mistake(name.into()).to_string())
         };
+        let problem = |file: &str, name: &str, mistake: fn(String) -> Lost| problem_from(1, file, name, mistake);
         let in_prose = |file: &str, prose: &Prose| -> Vec<Refused> {
             let names = prose.placeholders().filter_map(|one| one.entry.as_deref());
             let moved = prose.placeholders().filter_map(|one| one.moved.as_deref());
@@ -216,9 +221,9 @@ impl Study {
             let variants = moved.filter(|label| !self.sheet.has_variant(label));
             entries.chain(variants.map(|label| problem(file, label, Lost::Variant))).collect()
         };
-        let in_list = |file: &str, names: &[String]| -> Vec<Refused> {
+        let in_list = |file: &str, names: &[String], from: usize| -> Vec<Refused> {
             let unknown = |name: &&String| !has(name).unwrap_or(false);
-            names.iter().filter(unknown).map(|name| problem(file, name, Lost::Entry)).collect()
+            names.iter().filter(unknown).map(|name| problem_from(from, file, name, Lost::Entry)).collect()
         };
         let mut unread = Vec::new();
         for file in self.texts.files.keys().filter(|file| file.starts_with("reference/")) {
@@ -226,21 +231,21 @@ impl Study {
             unread.extend(entries.flat_map(|entry| in_prose(file, &entry.prose())));
         }
         for (name, assumption) in self.sheet.iter() {
-            unread.extend(in_list(ASSUMPTIONS, &assumption.fitted_to));
+            unread.extend(in_list(ASSUMPTIONS, &assumption.fitted_to, assumption.place.line));
             match Prose::parse(&assumption.reason) {
                 Ok(prose) => unread.extend(in_prose(ASSUMPTIONS, &prose)),
                 Err(error) => {
                     let mistake = format!("the reason of `{name}` has {error}");
-                    unread.push(refused(ASSUMPTIONS, assumption.place.line, mistake));
+                    unread.push(refused(ASSUMPTIONS, (assumption.place.line, 1), mistake));
                 }
             }
         }
-        unread.extend(self.about.findings.iter().flat_map(|finding| in_list(STUDY, &finding.entries)));
+        unread.extend(self.about.findings.iter().flat_map(|finding| in_list(STUDY, &finding.entries, 1)));
         for file in self.texts.files.keys().filter(|file| file.starts_with("calibrations/")) {
             let Some(Calibration { fit, hold_out, .. }) = self.calibrations.get(stem(file)) else { continue };
             // All entries of an experiment are asked for by its name.
             let one_by_one = fit.iter().chain(hold_out).filter(|name| !name.ends_with("/*")).cloned();
-            unread.extend(in_list(file, &one_by_one.collect::<Vec<_>>()));
+            unread.extend(in_list(file, &one_by_one.collect::<Vec<_>>(), 1));
         }
         unread
     }
@@ -307,8 +312,8 @@ fn references(
             }
             let reference = parse_reference(id, file, text)?;
             let read = reference.other_tables().into_iter().chain([id.to_owned()]);
-            let columns = read.filter_map(|id| Some((id.clone(), loaded.columns(texts, &id)?))).collect();
-            reference.check_tables(file, text, &KnownTables { ids: texts.ids(), columns })?;
+            let tables = read.filter_map(|id| Some((id.clone(), loaded.table(texts, &id)?))).collect();
+            reference.check_tables(file, text, &KnownTables { ids: texts.ids(), tables })?;
             Ok(reference)
         });
         match reference {

@@ -455,3 +455,27 @@ fn explain_tells_what_an_entry_hangs_on_and_simulates_nothing() {
     let unknown = shotdamp(&desk, &["explain", "ch3-stop/at-three"]);
     assert!(unknown.code == 2 && unknown.err.contains("there is no entry `ch3-stop/at-three`"), "{}", unknown.err);
 }
+
+#[test]
+fn entries_that_chose_an_assumption_and_are_none_are_told_at_their_places_and_leave_nothing_out() {
+    let desk = simulated();
+    let fitted = "reason: plastic, fitted_to: [ch3-gap/grows, ch3-gap/lost,\n  ch3-gap/gone]";
+    let text = ASSUMPTIONS.replacen("reason: plastic", fitted, 1);
+    desk.put("experiments/assumptions.yaml", &text);
+    let line = 1 + text.lines().position(|line| line.contains("ch3-gap/lost")).unwrap();
+    let column = 1 + text.lines().nth(line - 1).unwrap().find("ch3-gap/lost").unwrap();
+    let said = shotdamp(&desk, &["run", "--dry-run"]);
+    for place in [format!("assumptions.yaml:{line}:{column}\n"), format!("assumptions.yaml:{}:3\n", line + 1)] {
+        assert!(said.err.contains(&place), "{place}: {}", said.err);
+    }
+    assert!(!(said.out + &said.err).contains("Left out"), "the experiments are planned");
+}
+
+#[test]
+fn a_study_without_experiments_is_answered_with_the_command_that_begins_one() {
+    let folder = tempfile::TempDir::new().unwrap();
+    fs::create_dir(folder.path().join("experiments")).unwrap();
+    let list = Command::cargo_bin("shotdamp").unwrap().current_dir(&folder).arg("list").output().unwrap();
+    let said = String::from_utf8_lossy(&list.stderr).into_owned();
+    assert!(said.contains("there are no experiments yet: `shotdamp new ID` begins one"), "{said}");
+}

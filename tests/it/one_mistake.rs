@@ -1,6 +1,6 @@
 //! One mistake is told once, and what would go wrong later is told at once.
 
-use shotdamp::experiment::{Assumptions, parse_experiment};
+use shotdamp::experiment::{Assumptions, parse_assumptions, parse_experiment};
 
 const BEAM: &str = "
 title: t
@@ -49,4 +49,74 @@ fn no_figure_takes_the_name_of_the_drawing_of_the_scene() {
     let named = |name: &str| said("figure: {x", &format!("figure: {{name: {name}, x"));
     assert_eq!(named("scene"), ["`scene` names the drawing of the scene"]);
     assert_eq!(named("gaps"), [""; 0]);
+}
+
+/// What is marked of the beam with one thing changed, by the only mistake.
+fn marked(from: &str, to: &str) -> String {
+    assert!(BEAM.contains(from), "{from}");
+    let text = BEAM.replacen(from, to, 1);
+    let read = parse_experiment(&"x".parse().unwrap(), "mine.yaml", &text, &Assumptions::default());
+    let problems = read.unwrap_err();
+    assert_eq!(problems.list.len(), 1, "{problems}");
+    let place = problems.list[0].place.unwrap();
+    text[place.offset..place.offset + place.bytes].to_owned()
+}
+
+#[test]
+fn a_value_that_physics_refuses_is_marked_itself() {
+    for (from, to, wrong) in [
+        ("frequency_ratio: 1", "frequency_ratio: 0.0", "0.0"),
+        ("impulse_train: {at: 1", "impulse_train: {at: 0.000", "0.000"),
+        ("modes: 4", "modes: 500", "500"),
+        ("modes: 4", "modes: 00", "00"),
+        ("particle_share: 0.5", "particle_share: 1.5", "1.5"),
+        ("gap_ratio: 50", "gap: -5 mm", "-5 mm"),
+        ("dampers: [{at: 1", "dampers: [{at: 2 m", "2 m"),
+    ] {
+        assert_eq!(marked(from, to), wrong, "{to}");
+    }
+    let massless = "mass_ratio: 0.00, particle_share: 0.5, gap_ratio: 50, floor: {resilient: {stiffness: tuned, damping_ratio: 0.1}}}]";
+    let damper = "mass_ratio: 0.05, particle_share: 0.5, gap_ratio: 50, floor: {rigid: {restitution: 0.6}}}]";
+    assert_eq!(marked(damper, massless), "0.00");
+}
+
+#[test]
+fn a_swept_value_that_physics_refuses_is_marked_in_the_sweep_under_its_own_name() {
+    let train = "force_ratio: swept, frequency_ratio: 1}}\nsweep: {force_ratio: [1, 2]}";
+    let swept = "force_ratio: swept, frequency_ratio: swept}}\nsweep: {force_ratio: [1, 2], frequency_ratio: [0, 1]}";
+    assert_eq!(marked(train, swept), "frequency_ratio");
+}
+
+#[test]
+fn plain_assumed_where_no_assumption_can_stand_by_default_says_what_to_write() {
+    for key in ["mass_ratio: 0.05", "gap_ratio: 50", "frequency_ratio: 1", "rayleigh: 5e-5", "restitution: 0.6"] {
+        let (name, _) = key.split_once(':').unwrap();
+        let said = said(key, &format!("{name}: assumed"));
+        assert_eq!(said, ["no assumption stands for this key"], "{key}");
+    }
+}
+
+#[test]
+fn the_value_of_an_assumption_is_no_other_assumption() {
+    let text = "a: {quantity: ratio, value: {assumed: b}, reason: r}\nb: {quantity: ratio, value: 1, reason: r}\n";
+    let problems = parse_assumptions("assumptions.yaml", text).unwrap_err();
+    assert_eq!(problems.list.len(), 1, "{problems}");
+    assert_eq!(problems.list[0].message, "the value of an assumption cannot be another assumption");
+}
+
+#[test]
+fn an_anchor_is_marked_itself_and_its_alias_once() {
+    assert_eq!(marked("about: a", "about: &x a"), "&x");
+    let text = BEAM.replace("title: t", "title: &x t").replace("about: a", "about: *x");
+    let problems = parse_experiment(&"x".parse().unwrap(), "mine.yaml", &text, &Assumptions::default()).unwrap_err();
+    let said: Vec<&str> = problems.list.iter().map(|one| one.message.as_str()).collect();
+    assert_eq!(said, ["anchors (`&name`) are not accepted", "aliases (`*name`) are not accepted"]);
+}
+
+#[test]
+fn a_range_of_an_axis_that_holds_nothing_of_the_sweep_is_told_before_anything_runs() {
+    let of =
+        |range: &str| said("figure: {x: force_ratio", &format!("figure: {{x: {{column: force_ratio, range: {range}}}"));
+    assert_eq!(of("[1000, 2000]"), ["nothing of `force_ratio` lies in this range"]);
+    assert_eq!(of("[0.5, 1.5]"), [""; 0]);
 }

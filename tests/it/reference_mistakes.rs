@@ -63,7 +63,7 @@ not_judged:
 10:55 a range has no key `form` | did you mean `from`?
 11:13 a claim has no form `monotne` | did you mean `monotone`?
 12:9 an entry above has the id `second`
-15:13 a rise or fall lacks `direction`
+15:13 a rise or fall lacks `direction`: `increasing` or `decreasing`
 15:70 `5 %` is not a number | write the fraction: 0.05
 16:5 an entry lacks `says`
 18:21 equality needs two numbers or more
@@ -199,4 +199,39 @@ fn a_table_or_a_column_that_there_will_never_be_is_told_before_anything_runs() {
     for part in ["`ch3-stpo` is not an experiment of this study", "did you mean `ch3-stop`?"] {
         assert!(said.err.contains(part), "{}", said.err);
     }
+}
+
+#[test]
+fn a_missing_key_is_told_with_the_words_that_it_takes() {
+    let peak = of("value: 2, from: {peak: {of: velocity_ratio, over: force_ratio}}");
+    assert_eq!(peak.len(), 2, "{peak:?}");
+    assert!(peak[0].contains("a peak lacks `which`: `highest` or "), "{peak:?}");
+    assert!(peak[1].contains("a peak lacks `read`: `place` or `height` or `half_power_width`"), "{peak:?}");
+    let difference = of("value: 2, from: {difference: [a, b]}");
+    assert!(difference[0].ends_with("not as a list | write {of: …, less: …}"), "{difference:?}");
+}
+
+#[test]
+fn rows_that_there_will_never_be_are_told_before_anything_runs() {
+    let desk = simulated();
+    let with = |from: &str| {
+        let entry = format!("  - {{id: more, place: s. 3, says: It., value: 2, from: {from}}}\n");
+        desk.put("reference/ch3/ch3-gap.yaml", &format!("{GAP_REFERENCE}{entry}"));
+        shotdamp(&desk, &["check"])
+    };
+    let none = with("{maximum: {of: velocity_ratio, over: gap_ratio, where: {gap_ratio: 7.5}}}");
+    assert_eq!(none.code, 2, "{}", none.err);
+    for part in ["has no row with gap_ratio 7.5", "ch3-gap.yaml:", "= `gap_ratio` is "] {
+        assert!(none.err.contains(part), "{}", none.err);
+    }
+    let several = with("{cell: {of: velocity_ratio}}");
+    assert_eq!(several.code, 2, "{}", several.err);
+    for part in ["`cell` reads one row, and ", "add `where: {gap_ratio: …}`"] {
+        assert!(several.err.contains(part), "{}", several.err);
+    }
+    // One at each level.
+    let trend = "  - {id: more, place: s. 3, says: It., claim: {trend: {of: {cell: {of: velocity_ratio}}, along: gap_ratio, direction: increasing}}}\n";
+    desk.put("reference/ch3/ch3-gap.yaml", &format!("{GAP_REFERENCE}{trend}"));
+    let each = shotdamp(&desk, &["check"]);
+    assert!(!each.err.contains("reads one row"), "{}", each.err);
 }

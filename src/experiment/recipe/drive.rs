@@ -11,6 +11,9 @@ use super::place::PlaceRecipe;
 use super::resolve::{Base, above};
 use crate::scene::{Excitation, Structure};
 
+/// Words that state how often a force acts.
+const TIMING: [&str; 4] = ["frequency_ratio", "period", "angular_frequency", "forced_mode"];
+
 impl ExcitationRecipe {
     /// Nothing drives the scene.
     #[must_use]
@@ -32,8 +35,9 @@ impl ExcitationRecipe {
     /// `carried`: mass of all dampers, kg.
     pub(super) fn resolve(&self, base: &Base<'_>, carried: f64) -> Result<Excitation, RecipeError> {
         let inputs = base.inputs;
-        let angular_frequency = self.angular_frequency(base, carried)?;
-        above("the forcing frequency", angular_frequency, 0.0)?;
+        let of_timing = |error: RecipeError| error.at_keys(&TIMING);
+        let angular_frequency = self.angular_frequency(base, carried).map_err(of_timing)?;
+        above("the forcing frequency", angular_frequency, 0.0).map_err(of_timing)?;
         // A stated period is kept to the bit.
         let period = match &self.timing {
             TimingRecipe::Period(period) => inputs.get(period)?,
@@ -45,7 +49,7 @@ impl ExcitationRecipe {
                 StrengthRecipe::BaseAmplitudeRatio(ratio) => -inputs.get(ratio)? * base.mass * base.gravity,
                 StrengthRecipe::Force(force) => inputs.get(force)?,
                 StrengthRecipe::Impulse(_) => {
-                    return Err(RecipeError::OutOfRange("a harmonic force takes a force, not an impulse".into()));
+                    return Err(RecipeError::out_of_range("a harmonic force takes a force, not an impulse"));
                 }
             };
             return Ok(Excitation::Harmonic { force, angular_frequency });
@@ -58,9 +62,8 @@ impl ExcitationRecipe {
             ExcitationKind::PulseTrain { duration, shape } => {
                 let duration = inputs.get(duration)?;
                 if !(duration > 0.0 && duration <= period) {
-                    return Err(RecipeError::OutOfRange(format!(
-                        "a pulse of {duration} s does not fit into a forcing period of {period} s"
-                    )));
+                    let message = format!("a pulse of {duration} s does not fit into a forcing period of {period} s");
+                    return Err(RecipeError::out_of_range(message).at_keys(&["pulse_duration", "duration"]));
                 }
                 Excitation::PulseTrain { impulse, period, duration, shape: *shape }
             }
@@ -90,7 +93,7 @@ impl ExcitationRecipe {
             (TimingRecipe::ForcedMode(mode), _) => {
                 let frequency = base.frequencies.get((*mode as usize).wrapping_sub(1)).copied();
                 frequency.ok_or_else(|| {
-                    RecipeError::OutOfRange(format!(
+                    RecipeError::out_of_range(format!(
                         "forced_mode {mode} of a model of {} modes",
                         base.frequencies.len()
                     ))
@@ -107,7 +110,7 @@ impl ExcitationRecipe {
             StrengthRecipe::Impulse(impulse) => return inputs.get(impulse),
             StrengthRecipe::ForceRatio(ratio) => inputs.get(ratio)?,
             StrengthRecipe::BaseAmplitudeRatio(_) | StrengthRecipe::Force(_) => {
-                return Err(RecipeError::OutOfRange("an impulse takes force_ratio or an impulse in N s".into()));
+                return Err(RecipeError::out_of_range("an impulse takes force_ratio or an impulse in N s"));
             }
         };
         let time = match &self.impulse_time {

@@ -227,7 +227,7 @@ impl<'a> Inputs<'a> {
     ) -> Result<T, RecipeError> {
         let missing = || {
             let word = word_of(slot);
-            RecipeError::OutOfRange(format!(
+            RecipeError::out_of_range(format!(
                 "{needs} `{word}`, the {}: write it beside what needs it, or declare an assumption for it under `defaults: {word}` in \
                  {ASSUMPTIONS}",
                 slot.about()

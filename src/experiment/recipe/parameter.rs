@@ -8,6 +8,7 @@ use super::parts::{
     MassReading, MassRecipe, Part, Recipe, RecipeError, StiffnessRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe,
 };
 use crate::experiment::quantity::Dimension;
+use crate::experiment::word::words;
 use crate::scene::{PulseShape, whole};
 
 /// What a sweep may vary. The earlier one varies slower.
@@ -263,11 +264,16 @@ impl Parameter {
     }
 }
 
+/// A whole number above zero.
+fn count(value: f64) -> Result<u32, RecipeError> {
+    whole(value).map_err(|error| RecipeError::out_of_range(error.message))
+}
+
 /// The number that a sweep gives.
 fn number(parameter: Parameter, value: ParameterValue) -> Result<f64, RecipeError> {
     match value {
         ParameterValue::Number(x) => Ok(x),
-        _ => Err(RecipeError::OutOfRange(format!("{parameter:?} takes a number here"))),
+        _ => Err(RecipeError::out_of_range(format!("{parameter:?} takes a number here"))),
     }
 }
 
@@ -277,6 +283,11 @@ impl Recipe {
     /// # Errors
     /// [`RecipeError::NothingToVary`] if the scene has no such parameter.
     pub fn set(&mut self, parameter: Parameter, value: ParameterValue) -> Result<(), RecipeError> {
+        let word = words::<Parameter>().get(parameter as usize).copied();
+        self.put(parameter, value).map_err(|error| error.at_keys(word.as_slice()))
+    }
+
+    fn put(&mut self, parameter: Parameter, value: ParameterValue) -> Result<(), RecipeError> {
         let nothing = |what| RecipeError::NothingToVary { parameter, what };
         let number = || number(parameter, value);
         match parameter {
@@ -288,7 +299,7 @@ impl Recipe {
             Parameter::Impulse => self.excitation.strength = StrengthRecipe::Impulse(Given::Stated(number()?)),
             Parameter::FrequencyRatio => self.excitation.timing = TimingRecipe::FrequencyRatio(number()?.into()),
             Parameter::AngularFrequency => self.excitation.timing = TimingRecipe::AngularFrequency(number()?.into()),
-            Parameter::ForcedMode => self.excitation.timing = TimingRecipe::ForcedMode(whole(number()?)?),
+            Parameter::ForcedMode => self.excitation.timing = TimingRecipe::ForcedMode(count(number()?)?),
             Parameter::ForceX | Parameter::ForceY => {
                 let side = usize::from(parameter == Parameter::ForceY);
                 if !self.excitation.at.set_share(side, number()?) {
@@ -301,14 +312,14 @@ impl Recipe {
                     *duration = seconds.into();
                     if matches!(shape, PulseShape::Binomial { .. }) {
                         let binomial = PulseShape::binomial(seconds);
-                        *shape = binomial.map_err(|error| RecipeError::OutOfRange(error.to_string()))?;
+                        *shape = binomial.map_err(|error| RecipeError::out_of_range(error.to_string()))?;
                     }
                 }
                 _ => return Err(nothing("no pulse")),
             },
-            Parameter::Mode => self.mode = Some(whole(number()?)?),
+            Parameter::Mode => self.mode = Some(count(number()?)?),
             Parameter::Place => {
-                let chosen = whole(number()?)?;
+                let chosen = count(number()?)?;
                 let mut listed = self.excitation.at.choose(chosen);
                 for damper in &mut self.dampers {
                     listed |= damper.at.choose(chosen);
@@ -367,7 +378,7 @@ impl DamperRecipe {
             }
             Parameter::DamperCount => {
                 let array = self.array.as_mut().ok_or_else(|| nothing("no array of dampers"))?;
-                array.count = vec![whole(number()?)?];
+                array.count = vec![count(number()?)?];
             }
             Parameter::GapRatio => {
                 self.gap = match value {
@@ -413,7 +424,7 @@ impl DamperRecipe {
                 ParameterValue::Without => self.stop = None,
                 ParameterValue::With if self.stop.is_some() => {}
                 ParameterValue::With => return Err(nothing("no limit stop to take out or leave in")),
-                _ => return Err(RecipeError::OutOfRange("stop takes `with` or `without`".into())),
+                _ => return Err(RecipeError::out_of_range("stop takes `with` or `without`")),
             },
             Parameter::StopLength => {
                 self.stop.as_mut().ok_or_else(|| nothing("no limit stop"))?.length = Given::Stated(number()?);

@@ -229,7 +229,7 @@ impl Recipe {
         for damper in &mut self.dampers {
             let count = damper.array.as_ref().map_or(1, |array| array.count.iter().product::<u32>() as usize);
             let Some((own, rest)) = left.split_at_checked(count) else {
-                return Err(RecipeError::OutOfRange(format!("{} gaps are too few: one for each damper", gaps.len())));
+                return Err(RecipeError::out_of_range(format!("{} gaps are too few: one for each damper", gaps.len())));
             };
             left = rest;
             damper.gap = match word {
@@ -240,7 +240,7 @@ impl Recipe {
         if left.is_empty() {
             Ok(())
         } else {
-            Err(RecipeError::OutOfRange(format!("{} gaps are too many: one for each damper", gaps.len())))
+            Err(RecipeError::out_of_range(format!("{} gaps are too many: one for each damper", gaps.len())))
         }
     }
 }
@@ -464,8 +464,15 @@ pub enum RecipeError {
     #[error("the assumption `{0}` is not declared in {ASSUMPTIONS}, or is of another kind")]
     Assumption(AssumptionName),
     /// A value that physics refuses.
-    #[error("{0}")]
-    OutOfRange(String),
+    #[error("{message}")]
+    OutOfRange {
+        /// What is wrong with it.
+        message: String,
+        /// The part of the scene that it belongs to, where that is known.
+        part: Option<Part>,
+        /// Words by which it is written in that part, or swept; the first that is there is meant.
+        keys: Vec<&'static str>,
+    },
     /// A force acts, or motion is observed, where the structure does not move.
     #[error(
         "{what} stands where {structure} does not move, since every mode shape is zero there: move it off the support"
@@ -478,14 +485,31 @@ pub enum RecipeError {
         /// The structure.
         structure: &'static str,
     },
-    /// The same as out of range, where it is known which part of the scene is meant.
-    #[error("{message}")]
-    Part {
-        /// Which part.
-        part: Part,
-        /// What is wrong with it.
-        message: String,
-    },
+}
+
+impl RecipeError {
+    /// A value that physics refuses, of a place to be named.
+    pub(super) fn out_of_range(message: impl Into<String>) -> Self {
+        Self::OutOfRange { message: message.into(), part: None, keys: Vec::new() }
+    }
+
+    /// Names the part of the scene, unless that is done.
+    pub(super) fn within(mut self, within: Part) -> Self {
+        if let Self::OutOfRange { part, .. } = &mut self {
+            part.get_or_insert(within);
+        }
+        self
+    }
+
+    /// Names the words by which the value is written or swept, unless that is done.
+    pub(super) fn at_keys(mut self, words: &[&'static str]) -> Self {
+        if let Self::OutOfRange { keys, .. } = &mut self
+            && keys.is_empty()
+        {
+            keys.extend(words);
+        }
+        self
+    }
 }
 
 /// A part of a scene that a refusal is about.
@@ -504,6 +528,15 @@ pub enum Part {
 }
 
 impl Part {
+    /// Words by which its place is written, or swept.
+    pub(crate) fn place_keys(self) -> &'static [&'static str] {
+        match self {
+            Self::Damper(_) => &["at", "damper_x", "damper_y", "place"],
+            Self::Excitation => &["at", "force_x", "force_y", "place"],
+            Self::Structure | Self::Observe | Self::Start => &[],
+        }
+    }
+
     /// Any damper stands for all of them.
     pub(crate) fn kind(self) -> Self {
         if let Self::Damper(_) = self { Self::Damper(0) } else { self }
@@ -512,12 +545,12 @@ impl Part {
 
 impl From<StructureError> for RecipeError {
     fn from(error: StructureError) -> Self {
-        Self::Part { part: Part::Structure, message: error.0 }
+        Self::out_of_range(error.message).within(Part::Structure).at_keys(error.key.as_slice())
     }
 }
 
 impl From<StartError> for RecipeError {
     fn from(error: StartError) -> Self {
-        Self::Part { part: Part::Start, message: error.0 }
+        Self::out_of_range(error.0).within(Part::Start)
     }
 }

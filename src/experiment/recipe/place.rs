@@ -97,7 +97,8 @@ impl<'a> Places<'a> {
         part: Part,
     ) -> Result<Vec<Point>, RecipeError> {
         let Some(array) = array else { return Ok(vec![self.point(place, part)?]) };
-        let refuse = |message: String| Err(RecipeError::Part { part, message });
+        let refuse =
+            |message: String| Err(RecipeError::out_of_range(message).within(part).at_keys(&["damper_count", "array"]));
         let sides = self.sides.len();
         if sides == 0 {
             return refuse(format!("an array needs a side to stand along, and {} has none", self.kind.what));
@@ -141,7 +142,7 @@ impl<'a> Places<'a> {
                 1 => format!("a place on {} is one number: `at: 0.5`, or `at: 20 cm`", self.kind.what),
                 _ => format!("a place on {} is two numbers: `at: [0.25, 0.5]`", self.kind.what),
             };
-            return Err(RecipeError::Part { part, message });
+            return Err(refused_place(part, message));
         }
         let coordinate = |(coordinate, side): (&Coordinate, &f64)| match coordinate {
             Coordinate::Share(share) => Ok(share * side),
@@ -157,14 +158,14 @@ impl<'a> Places<'a> {
         // A list of one place is that place, whichever is chosen of longer ones.
         let index = if places.len() == 1 { Some(0) } else { number.checked_sub(1) };
         let share = index.and_then(|index| places.get(index as usize)?.get(side));
-        share.copied().ok_or_else(|| RecipeError::Part {
-            part,
-            message: format!(
+        share.copied().ok_or_else(|| {
+            let message = format!(
                 "`{of}` lists {} places of {} coordinates, and none is number {number} of {}",
                 places.len(),
                 places.first().map_or(0, Vec::len),
                 self.kind.what
-            ),
+            );
+            refused_place(part, message)
         })
     }
 
@@ -179,12 +180,16 @@ impl<'a> Places<'a> {
                 };
                 let message =
                     format!("{what} at {coordinate} m lies outside {}: its {word} is {side} m", self.kind.what);
-                return Err(RecipeError::Part { part, message });
+                return Err(refused_place(part, message));
             }
         }
         let at = |i: usize| coordinates.get(i).map_or(0.0, |x| x.clamp(0.0, self.sides[i]));
         Ok(Point { x: at(0), y: at(1) })
     }
+}
+
+fn refused_place(part: Part, message: String) -> RecipeError {
+    RecipeError::out_of_range(message).within(part).at_keys(part.place_keys())
 }
 
 /// Rows and columns of `all` places as near to a square as they go: 1 × 1, 2 × 2, 2 × 3, 3 × 3.

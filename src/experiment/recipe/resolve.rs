@@ -110,7 +110,7 @@ impl Recipe {
         let kind = self.structure.kind()?;
         let structure = self.structure.build(inputs)?;
         let gravity = inputs.get(&self.gravity)?;
-        at_least("gravity", gravity, 0.0)?;
+        at_least("gravity", gravity, 0.0).map_err(|error| error.at_keys(&["gravity"]))?;
         let model = structure.model();
         let base = Base {
             kind,
@@ -123,7 +123,7 @@ impl Recipe {
         if self.mode_number() as usize > base.frequencies.len() + self.dampers.len() {
             let (mode, modes) = (self.mode_number(), base.frequencies.len());
             let message = format!("there is no mode {mode} in a model of {modes}");
-            return Err(RecipeError::Part { part: Part::Structure, message });
+            return Err(RecipeError::out_of_range(message).at_keys(&["mode", "forced_mode"]));
         }
         let places = Places::on(kind, model, inputs);
         let mut placed = Vec::new();
@@ -200,7 +200,7 @@ impl Base<'_> {
 
     /// Why nothing can be stated in units of ω₁, and what to write instead.
     pub(super) fn without_frequency(&self, instead: &str) -> RecipeError {
-        RecipeError::OutOfRange(if self.kind.is_lumped() {
+        RecipeError::out_of_range(if self.kind.is_lumped() {
             format!("a mass without spring has no natural frequency: {instead}")
         } else {
             "the first natural frequency of this structure comes out as zero: look at its dimensions, Young's modulus and \
@@ -229,11 +229,11 @@ impl DamperRecipe {
         let margin = self.array.as_ref().and_then(|array| array.margin.as_ref()).map(|margin| base.inputs.get(margin));
         let points = places.array(&self.at, self.array.as_ref(), margin.transpose()?.unwrap_or(0.0), part)?;
         let count = points.len() as f64;
-        let whole = self.whole_mass(base).map_err(|error| error.within(part))?;
+        let whole = self.whole_mass(base).map_err(|error| error.within(part).at_keys(&["mass_ratio", "mass"]))?;
         let share = base.inputs.get(&self.particle_share)?;
         if !(share > 0.0 && share <= 1.0) {
             let message = format!("particle_share lies above 0 and up to 1, not at {share}");
-            return Err(RecipeError::Part { part, message });
+            return Err(RecipeError::out_of_range(message).within(part).at_keys(&["particle_share"]));
         }
         let each = whole / count;
         let particle_mass = each * share;
@@ -279,7 +279,7 @@ impl DamperRecipe {
             } else {
                 "a damper without mass on a beam or plate is none: write `dampers: without` in the sweep"
             };
-            return Err(RecipeError::OutOfRange(needs.into()));
+            return Err(RecipeError::out_of_range(needs));
         }
         Ok(mass)
     }
@@ -296,11 +296,15 @@ impl DamperRecipe {
 impl Placed<'_> {
     fn resolve(&self, base: &Base<'_>, frequency: &FrequencyOf<'_>) -> Result<Damper, RecipeError> {
         let Self { recipe, at, particle_mass, enclosure_mass, .. } = *self;
-        let gap = self.gap(base, frequency)?;
-        let surface = |recipe: &SurfaceRecipe| recipe.resolve(base, particle_mass, frequency);
-        let stop = recipe.stop.as_ref().map(|stop| stop.read(base.inputs)).transpose()?;
-        let walls = self.walls(base)?;
-        let (floor, ceiling) = (surface(&recipe.floor)?, surface(&recipe.ceiling)?);
+        let gap = self.gap(base, frequency).map_err(|error| error.at_keys(&["gap_ratio", "gap", "filling"]))?;
+        let stop = recipe.stop.as_ref().map(|stop| stop.read(base.inputs)).transpose();
+        let stop = stop.map_err(|error| error.at_keys(&["stop_length", "stop"]))?;
+        let walls = self.walls(base).map_err(|error| error.at_keys(&["wall_stiffness_ratio", "walls"]))?;
+        let surface = |recipe: &SurfaceRecipe, key: &'static str| {
+            let keys = ["floor_stiffness_ratio", "floor_tuning", key, "floor"];
+            recipe.resolve(base, particle_mass, frequency).map_err(|error| error.at_keys(&keys))
+        };
+        let (floor, ceiling) = (surface(&recipe.floor, "floor")?, surface(&recipe.ceiling, "ceiling")?);
         Ok(Damper { at, particle_mass, enclosure_mass, gap, floor, ceiling, stop, walls })
     }
 
@@ -318,7 +322,7 @@ impl Placed<'_> {
         };
         let each = |list: &[f64]| {
             list.get(self.index).copied().ok_or_else(|| {
-                RecipeError::OutOfRange(format!("{} gaps are too few: one for each damper of the array", list.len()))
+                RecipeError::out_of_range(format!("{} gaps are too few: one for each damper of the array", list.len()))
             })
         };
         let gap = match &self.recipe.gap {
@@ -331,7 +335,7 @@ impl Placed<'_> {
             GapRecipe::Infinite => f64::INFINITY,
         };
         if gap.is_nan() || gap < 0.0 {
-            return Err(RecipeError::OutOfRange(format!("a gap clearance cannot be {gap} m")));
+            return Err(RecipeError::out_of_range(format!("a gap clearance cannot be {gap} m")));
         }
         Ok(gap)
     }
@@ -339,7 +343,7 @@ impl Placed<'_> {
     fn walls(&self, base: &Base<'_>) -> Result<Option<Walls>, RecipeError> {
         let Some(walls) = &self.recipe.walls else { return Ok(None) };
         let Structure::SingleMass(mass) = base.structure else {
-            return Err(RecipeError::OutOfRange("soft walls are modelled on a single mass alone".into()));
+            return Err(RecipeError::out_of_range("soft walls are modelled on a single mass alone"));
         };
         let inputs = base.inputs;
         let stiffness_ratio = inputs.get(&walls.stiffness_ratio)?;
@@ -347,7 +351,7 @@ impl Placed<'_> {
         let share = inputs.needed(walls.ceiling_mass_ratio.as_ref(), Slot::CeilingMassRatio, "soft walls need")?;
         let ceiling_mass = share * mass.mass;
         if !(ceiling_mass > 0.0 && ceiling_mass < mass.mass) {
-            return Err(RecipeError::OutOfRange("the ceiling body's mass must lie between 0 and the base mass".into()));
+            return Err(RecipeError::out_of_range("the ceiling body's mass must lie between 0 and the base mass"));
         }
         let stiffness = stiffness_ratio * mass.stiffness;
         Ok(Some(Walls { stiffness, damping: inputs.get(&walls.damping)?, ceiling_mass }))
@@ -382,7 +386,8 @@ impl SurfaceRecipe {
                     },
                     ContactDampingRecipe::Ratio(given) => match inputs.get(given)? {
                         ContactDampingRatio::Ratio(ratio) => {
-                            at_least("contact_damping_ratio", ratio, 0.0)?;
+                            at_least("contact_damping_ratio", ratio, 0.0)
+                                .map_err(|error| error.at_keys(&["contact_damping_ratio", "damping_ratio"]))?;
                             ContactDamping::Constant(2.0 * ratio * (stiffness * particle_mass).sqrt())
                         }
                         ContactDampingRatio::EquivalentViscous => by_half_cycles()?,
@@ -408,7 +413,7 @@ impl StiffnessRecipe {
         Ok(match (self, base.structure) {
             (Self::Ratio(given), Structure::SingleMass(mass)) => inputs.get(given)? * mass.stiffness,
             (Self::Ratio(_), _) => {
-                return Err(RecipeError::OutOfRange(format!(
+                return Err(RecipeError::out_of_range(format!(
                     "stiffness_ratio compares with the spring of a single mass, and {} has none: write `stiffness: tuned`",
                     base.kind.what
                 )));
@@ -437,7 +442,7 @@ impl ObserveRecipe {
             (PointsRecipe::NinePointGrid, _) if base.kind.sides.len() == 2 => grid().collect(),
             (PointsRecipe::NinePointGrid, _) => {
                 let message = format!("{} has no nine-point grid, which quarters two sides", base.kind.what);
-                return Err(RecipeError::Part { part: Part::Observe, message });
+                return Err(RecipeError::out_of_range(message).within(Part::Observe));
             }
         };
         let points = recipes.iter().map(|place| places.point(place, Part::Observe)).collect::<Result<Vec<_>, _>>()?;
@@ -449,21 +454,11 @@ impl ObserveRecipe {
     }
 }
 
-impl RecipeError {
-    /// Names the part of the scene, where nobody has.
-    fn within(self, part: Part) -> Self {
-        match self {
-            Self::OutOfRange(message) => Self::Part { part, message },
-            other => other,
-        }
-    }
-}
-
 pub(super) fn above(what: &str, value: f64, bound: f64) -> Result<(), RecipeError> {
     if value > bound && value.is_finite() {
         Ok(())
     } else {
-        Err(RecipeError::OutOfRange(format!("{what} must be above {bound}, not {value}")))
+        Err(RecipeError::out_of_range(format!("{what} must be above {bound}, not {value}")))
     }
 }
 
@@ -471,7 +466,7 @@ fn at_least(what: &str, value: f64, bound: f64) -> Result<(), RecipeError> {
     if value >= bound && value.is_finite() {
         Ok(())
     } else {
-        Err(RecipeError::OutOfRange(format!("{what} must be {bound} or more, not {value}")))
+        Err(RecipeError::out_of_range(format!("{what} must be {bound} or more, not {value}")))
     }
 }
 
@@ -480,5 +475,5 @@ fn coefficient(restitution: f64) -> Result<f64, RecipeError> {
     if (0.0..=1.0).contains(&restitution) {
         return Ok(restitution);
     }
-    Err(RecipeError::OutOfRange(format!("restitution lies between 0 and 1, not at {restitution}")))
+    Err(RecipeError::out_of_range(format!("restitution lies between 0 and 1, not at {restitution}")))
 }

@@ -54,7 +54,8 @@ impl StructureRecipe {
     /// # Errors
     /// [`RecipeError::OutOfRange`] for a name that is none.
     pub fn kind(&self) -> Result<&'static Kind, RecipeError> {
-        Kind::named(&self.kind).ok_or_else(|| RecipeError::OutOfRange(format!("there is no structure `{}`", self.kind)))
+        Kind::named(&self.kind)
+            .ok_or_else(|| RecipeError::out_of_range(format!("there is no structure `{}`", self.kind)))
     }
 
     /// Gives the key that `parameter` varies another value; false if it has no such key.

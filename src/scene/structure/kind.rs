@@ -41,8 +41,19 @@ impl Kind {
 
 /// Why values make no structure.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct StructureError(pub String);
+#[error("{message}")]
+pub struct StructureError {
+    /// The key whose value is refused.
+    pub key: Option<&'static str>,
+    /// What is wrong with it.
+    pub message: String,
+}
+
+impl StructureError {
+    pub(super) fn of(key: &'static str, message: impl Into<String>) -> Self {
+        Self { key: Some(key), message: message.into() }
+    }
+}
 
 /// A key of a structure.
 #[derive(Debug)]
@@ -96,7 +107,7 @@ pub fn whole(value: f64) -> Result<u32, StructureError> {
     if (1.0..=1e6).contains(&value) && value.fract() == 0.0 {
         return Ok(value as u32);
     }
-    Err(StructureError(format!("a whole number above zero is wanted, not {value}")))
+    Err(StructureError { key: None, message: format!("a whole number above zero is wanted, not {value}") })
 }
 
 /// The values of a structure's keys, for its model.
@@ -109,19 +120,19 @@ pub struct Values<'a> {
 }
 
 impl Values<'_> {
-    fn get(&self, key: &str) -> Result<&FieldValue, StructureError> {
+    fn get(&self, key: &'static str) -> Result<&FieldValue, StructureError> {
         let value = self.values.get(key);
-        value.ok_or_else(|| StructureError(format!("`{}` lacks `{key}`", self.kind.name)))
+        value.ok_or_else(|| StructureError::of(key, format!("`{}` lacks `{key}`", self.kind.name)))
     }
 
     /// A number above zero.
     ///
     /// # Errors
     /// If it is absent, or not above zero.
-    pub fn above_zero(&self, key: &str) -> Result<f64, StructureError> {
+    pub fn above_zero(&self, key: &'static str) -> Result<f64, StructureError> {
         match self.number(key)? {
             value if value > 0.0 && value.is_finite() => Ok(value),
-            value => Err(StructureError(format!("{key} must be above 0, not {value}"))),
+            value => Err(StructureError::of(key, format!("{key} must be above 0, not {value}"))),
         }
     }
 
@@ -129,10 +140,10 @@ impl Values<'_> {
     ///
     /// # Errors
     /// If it is absent, or negative.
-    pub fn ratio(&self, key: &str) -> Result<f64, StructureError> {
+    pub fn ratio(&self, key: &'static str) -> Result<f64, StructureError> {
         match self.number(key)? {
             value if value >= 0.0 && value.is_finite() => Ok(value),
-            value => Err(StructureError(format!("{key} must be 0 or more, not {value}"))),
+            value => Err(StructureError::of(key, format!("{key} must be 0 or more, not {value}"))),
         }
     }
 
@@ -140,10 +151,10 @@ impl Values<'_> {
     ///
     /// # Errors
     /// If it is absent.
-    pub fn number(&self, key: &str) -> Result<f64, StructureError> {
+    pub fn number(&self, key: &'static str) -> Result<f64, StructureError> {
         match self.get(key)? {
             FieldValue::Number(value) => Ok(*value),
-            _ => Err(StructureError(format!("{key} must be a number"))),
+            _ => Err(StructureError::of(key, format!("{key} must be a number"))),
         }
     }
 
@@ -152,7 +163,7 @@ impl Values<'_> {
     /// # Errors
     /// If it is absent, zero, not as many as there are sides, or more than `most` in all.
     pub fn modes<const SIDES: usize>(&self, most: u32, why: &str) -> Result<[u32; SIDES], StructureError> {
-        let refuse = |message: String| Err(StructureError(message));
+        let refuse = |message: String| Err(StructureError::of("modes", message));
         let counts = match self.get("modes")? {
             FieldValue::Counts(counts) => counts.clone(),
             _ => vec![whole(self.number("modes")?)?],
@@ -178,14 +189,14 @@ impl Values<'_> {
     ///
     /// # Errors
     /// If it is no such word.
-    pub fn word(&self, key: &str, words: &[&str]) -> Result<usize, StructureError> {
+    pub fn word(&self, key: &'static str, words: &[&str]) -> Result<usize, StructureError> {
         match self.values.get(key) {
             None => Ok(0),
             Some(FieldValue::Word(word)) => words
                 .iter()
                 .position(|known| known == word)
-                .ok_or_else(|| StructureError(format!("{key} is not `{word}`"))),
-            Some(_) => Err(StructureError(format!("{key} is one of {}", words.join(", ")))),
+                .ok_or_else(|| StructureError::of(key, format!("{key} is not `{word}`"))),
+            Some(_) => Err(StructureError::of(key, format!("{key} is one of {}", words.join(", ")))),
         }
     }
 }

@@ -47,7 +47,8 @@ pub(super) const KIND: Kind = Kind {
         let [m, n] = values.modes(MOST_MODES, why)?;
         let poisson_ratio = values.ratio("poisson_ratio")?;
         if poisson_ratio > 0.5 {
-            return Err(StructureError(format!("poisson_ratio lies between 0 and 0.5, not at {poisson_ratio}")));
+            let message = format!("poisson_ratio lies between 0 and 0.5, not at {poisson_ratio}");
+            return Err(StructureError::of("poisson_ratio", message));
         }
         let mut plate = SupportedPlate {
             width: values.above_zero("width")?,
