@@ -52,7 +52,7 @@ pub struct Calibrated {
     pub best: Option<f64>,
     /// The same two of results, with ensembles where the motion is chaotic.
     pub as_results: [Option<f64>; 2],
-    /// Of each input the index of its best value.
+    /// Of each input the index of its best value; of equal sets that which is nearest to the inputs in force.
     pub places: Vec<usize>,
     /// How well each input is determined.
     pub profiles: Vec<Profile>,
@@ -81,6 +81,8 @@ pub struct Profile {
     /// Of each value the root mean square of the errors that entries have where the others alone choose the rest; empty where none
     /// was left out.
     pub left_out: Vec<Option<f64>>,
+    /// No fitted entry depends on the input: sets that differ in it alone have the same residual.
+    pub is_unread: bool,
 }
 
 /// An entry under the inputs in force and under the best ones.
@@ -149,10 +151,11 @@ pub fn calibrate(
         [Residue::Exact(residual)] => residual,
         _ => None,
     };
-    let trail = search(calibration, in_force, |wanted| {
+    let first: Places = calibration.inputs.iter().map(|input| place_in_force(input, in_force)).collect();
+    let trail = search(calibration, &first, |wanted| {
         residuals.of(&wanted.iter().map(|(places, level)| (set(places), *level)).collect::<Vec<_>>())
     })?;
-    let best = trail.best(|_| true);
+    let best = trail.best_near(&first);
     let mut profiles = profiles(calibration, &trail);
     let mut predicted = Vec::new();
     if calibration.leave_one_out {
@@ -220,15 +223,16 @@ fn cycles_are_left(
 
 fn search(
     calibration: &Calibration,
-    in_force: &Assumptions,
+    first: &Places,
     residuals: impl FnMut(&[(Places, f64)]) -> Result<Vec<Residue>, RunError>,
 ) -> Result<Trail, RunError> {
     let counts: Vec<usize> = calibration.inputs.iter().map(|input| input.tried.count()).collect();
-    let first: Places = calibration.inputs.iter().map(|input| place_in_force(input, in_force)).collect();
     match calibration.search {
         CalibrationSearch::Grid => grid(&counts, residuals),
-        CalibrationSearch::Coordinate { starts, budget } => coordinate(&counts, first, starts, budget, residuals),
-        CalibrationSearch::Global { budget } => global(&counts, &first, budget, residuals),
+        CalibrationSearch::Coordinate { starts, budget } => {
+            coordinate(&counts, first.clone(), starts, budget, residuals)
+        }
+        CalibrationSearch::Global { budget } => global(&counts, first, budget, residuals),
     }
 }
 
@@ -238,6 +242,7 @@ fn profiles(calibration: &Calibration, trail: &Trail) -> Vec<Profile> {
             .map(|place| trail.best(|places| places[which] == place).map(|(_, residual)| residual))
             .collect(),
         left_out: Vec::new(),
+        is_unread: count > 1 && trail.does_not_depend_on(which),
     };
     calibration.inputs.iter().enumerate().map(|(which, input)| of(which, input.tried.count())).collect()
 }

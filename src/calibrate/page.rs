@@ -30,7 +30,8 @@ pub fn calibration(calibration: &Calibration, result: &Calibrated) -> String {
     if result.best.is_none() {
         text += "**No set gives every fitted entry a number**; “best inputs” stands for those in force.\n\n";
     }
-    text += "## Inputs\n\nFor each value the least residual that was found with it, all other inputs free; bold the best. \
+    text += "## Inputs\n\nFor each value the least residual that was found with it, all other inputs free; bold the best, and of \
+             equal ones the one in force. \
              An input is determined if no other value comes within a tenth of the best residual.";
     if calibration.leave_one_out {
         text += " Left out: with this value the root mean square of the errors that entries have where the others alone choose \
@@ -46,7 +47,7 @@ pub fn calibration(calibration: &Calibration, result: &Calibrated) -> String {
             points(input, &profile.residuals, *place),
             determined(profile, *place, calibration.search).into(),
         ];
-        let least = || least(&profile.left_out).unwrap_or(usize::MAX);
+        let least = || least(&profile.left_out, *place).unwrap_or(usize::MAX);
         let left_out = calibration.leave_one_out.then(|| points(input, &profile.left_out, least()));
         table.row(cells.into_iter().chain(left_out));
     }
@@ -127,10 +128,10 @@ fn predicted(one: &LeftOut, is_claim: bool) -> String {
     }
 }
 
-/// The index of the least of them.
-fn least(residuals: &[Option<f64>]) -> Option<usize> {
+/// The index of the least of them; of equal ones the `preferred`, if it is one of them.
+fn least(residuals: &[Option<f64>], preferred: usize) -> Option<usize> {
     let known = residuals.iter().enumerate().filter_map(|(value, residual)| Some((value, (*residual)?)));
-    known.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(value, _)| value)
+    known.min_by(|a, b| a.1.total_cmp(&b.1).then((a.0 != preferred).cmp(&(b.0 != preferred)))).map(|(value, _)| value)
 }
 
 /// How the sets were chosen, and how the search ended.
@@ -209,6 +210,9 @@ fn points(input: &CalibrationInput, residuals: &[Option<f64>], best: usize) -> S
 }
 
 fn determined(profile: &Profile, best: usize, search: CalibrationSearch) -> &'static str {
+    if profile.is_unread {
+        return "no: no fitted entry depends on it";
+    }
     let Some(Some(least)) = profile.residuals.get(best) else { return "no" };
     let rivals = profile.residuals.iter().enumerate().filter(|(place, residual)| {
         *place != best && residual.is_some_and(|residual| residual <= (1.0 + AS_GOOD) * least)

@@ -52,6 +52,30 @@ impl Trail {
         });
         exact.min_by(|a, b| a.1.total_cmp(&b.1))
     }
+
+    /// The best set of all; of equal ones that which differs from `first` in the fewest inputs.
+    pub(super) fn best_near(&self, first: &Places) -> Option<(&Places, f64)> {
+        let (_, least) = self.best(|_| true)?;
+        let moved = |places: &Places| places.iter().zip(first).filter(|(a, b)| a != b).count();
+        let equal = self.residuals.iter().filter(|(_, residual)| **residual == Residue::Exact(Some(least)));
+        equal.map(|(places, _)| (places, least)).min_by_key(|(places, _)| moved(places))
+    }
+
+    /// True if no set has another residual than those that differ from it in this input alone.
+    pub(super) fn does_not_depend_on(&self, input: usize) -> bool {
+        let mut groups: BTreeMap<Places, Vec<&Residue>> = BTreeMap::new();
+        for (places, residual) in &self.residuals {
+            groups.entry(with(places, &[(input, 0)])).or_default().push(residual);
+        }
+        let alike = |a: &Residue, b: &Residue| match (a, b) {
+            (Residue::Exact(a), Residue::Exact(b)) => a == b,
+            (Residue::Exact(Some(value)), Residue::AtLeast(bound))
+            | (Residue::AtLeast(bound), Residue::Exact(Some(value))) => bound <= value,
+            _ => true,
+        };
+        groups.values().any(|group| group.len() > 1)
+            && groups.values().all(|group| group.iter().all(|one| group.iter().all(|other| alike(one, other))))
+    }
 }
 
 /// Sets of a grid that are run side by side.

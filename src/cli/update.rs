@@ -11,7 +11,7 @@ use super::output::{print, print_error, print_progress, print_unread, print_warn
 use super::select::{Chosen, Found, choose, matched};
 use super::simulate::{How, Ran, held, print_failures, simulate};
 use crate::atomic::{check_writable, from_here};
-use crate::report::{INDEX, Judgement, Published, doubts, judge_all, publish, report_of, summary_of};
+use crate::report::{Elsewhere, INDEX, Judgement, Published, doubts, judge_all, publish, report_of, summary_of};
 use crate::study::{Item, Layout, Lock, RunTimes, STUDY, Snapshot, State, Study, before_run, remove_journals, save};
 use crate::text::words::counted;
 
@@ -169,21 +169,31 @@ pub(super) fn conclude(study: &Study, choice: &Choice, done: Done) -> Result<Exi
         let written = format!("{} written", counted(written, "figure or report", "figures and reports"));
         print(&format!("{all}: {experiments} {verb}{restored}; {written}.\n"))?;
     }
-    if elsewhere > 0 {
-        let of = counted(elsewhere, "experiment", "experiments");
-        print(&format!(
-            "The pages of the whole study stay as they are: they have verdicts of {of} without a table here, or whose reference cannot be read. \
-             `shotdamp run` makes all tables, and these pages once every reference can be read.\n"
-        ))?;
-    }
+    print(&pages_left(elsewhere))?;
     let planned =
         |id| study.items.iter().find(|item| item.source.experiment.id.0 == id).map(|item| item.source.folder());
     let folder = |id| study.known.get(id).map(|known| known.folder.as_str()).or_else(|| planned(id));
-    let index = (elsewhere == 0).then_some(INDEX);
+    let index = elsewhere.is_none().then_some(INDEX);
     let page = if tables_only { String::new() } else { page_to_open(&study.layout, &chosen.ids, folder, index) };
     print(&(verdicts_of(&judgement, &chosen.ids) + &page))?;
     print_error(&chosen.left_out());
     Ok(exit)
+}
+
+/// Why the pages of the whole study were left as they are; nothing if they were not.
+fn pages_left(elsewhere: Elsewhere) -> String {
+    let Elsewhere { without_table, without_reference } = elsewhere;
+    let tables = format!("{} no table here", counted(without_table, "experiment has", "experiments have"));
+    let references = format!(
+        "the {} cannot be read",
+        counted(without_reference, "experiment whose reference", "experiments whose references")
+    );
+    match (without_table, without_reference) {
+        (0, 0) => String::new(),
+        (_, 0) => format!("The pages of the whole study are not updated: {tables}; `shotdamp run` makes them.\n"),
+        (0, _) => format!("The pages of the whole study are not updated: of {references}.\n"),
+        _ => format!("The pages of the whole study are not updated: {tables}, and of {references}.\n"),
+    }
 }
 
 /// Writes down what is up to date now.

@@ -6,8 +6,10 @@ use crate::experiment::{self, BranchColumn, Joined, Stability};
 use crate::table::{Column, Data};
 
 use super::error::FigureError;
+use super::geometry::{Point, Rect};
 use super::group::number;
 use super::line::{Sample, Source};
+use super::style::MARKER;
 
 /// What branches are drawn by.
 pub(super) struct Branches<'a> {
@@ -35,12 +37,20 @@ impl<'a> Branches<'a> {
     pub(super) fn samples(&self, x: &Column, y: &Column, rows: &[usize], stability: Stability) -> Vec<Sample> {
         let at = |row: usize| Some(Sample::bare(number(x, row)?, number(y, row)?));
         let mut samples = Vec::new();
+        let is_on = |a: usize, b: usize| number(self.branch, a) == number(self.branch, b);
+        for part in rows.chunk_by(|a, b| is_on(*a, *b)) {
+            // A branch of one point is a point.
+            if let [alone] = *part
+                && self.is_stable(alone) == (stability == Stability::Stable)
+            {
+                samples.extend((!samples.is_empty()).then(Sample::gap).into_iter().chain(at(alone)));
+            }
+        }
         for pair in rows.windows(2) {
             let (here, next) = (pair[0], pair[1]);
             let is_stable = self.is_stable(here) && self.is_stable(next);
-            let joined = number(self.branch, here) == number(self.branch, next);
             let (true, Some(from), Some(to)) =
-                (joined && is_stable == (stability == Stability::Stable), at(here), at(next))
+                (is_on(here, next) && is_stable == (stability == Stability::Stable), at(here), at(next))
             else {
                 continue;
             };
@@ -62,6 +72,38 @@ pub(super) struct SpecialPoint {
     pub x: f64,
     pub y: f64,
     pub kind: Special,
+}
+
+/// The sign of a special point on a sheet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Sign {
+    pub kind: Special,
+    /// The point that it stands for.
+    pub of: Point,
+    /// Where it stands: at the point, or beside the signs that are there.
+    pub at: Point,
+}
+
+/// Signs of points in a frame. Of those that would cover each other one of a kind is enough, and those of other kinds stand in a column
+/// above or below it; none covers a branch that is a point itself, `alone`.
+pub(super) fn signs(points: impl Iterator<Item = (Point, Special)>, alone: &[Point], frame: &Rect) -> Vec<Sign> {
+    const APART: f64 = 2.0 * MARKER;
+    const ROW: f64 = 2.6 * MARKER;
+    let cover = |a: Point, b: Point| (a.x - b.x).abs() < APART && (a.y - b.y).abs() < APART;
+    let mut signs: Vec<Sign> = Vec::new();
+    for (of, kind) in points {
+        if signs.iter().any(|sign| sign.kind == kind && cover(sign.of, of)) {
+            continue;
+        }
+        let column = [0.0, -1.0, -2.0, -3.0, -4.0, 1.0, 2.0, 3.0, 4.0].map(|row| Point { y: of.y + row * ROW, ..of });
+        let is_free = |at: &&Point| {
+            let within = **at == of || (at.y > frame.top + MARKER && at.y < frame.bottom - MARKER);
+            within && signs.iter().map(|sign| &sign.at).chain(alone).all(|taken| !cover(*taken, **at))
+        };
+        let at = column.iter().find(is_free).copied().unwrap_or(of);
+        signs.push(Sign { kind, of, at });
+    }
+    signs
 }
 
 /// The special points of a panel.

@@ -1,5 +1,7 @@
 //! Rows that belong together: one combination of the levels of some columns.
 
+use crate::experiment::BasinColumn;
+use crate::measure::Measure;
 use crate::table::{Column, Data};
 use crate::text::words;
 
@@ -13,6 +15,12 @@ pub(super) fn number(column: &Column, row: usize) -> Option<f64> {
         Data::Int(cells) => cells.get(row).map(|&count| count as f64),
         Data::Text(_) | Data::FloatList(_) => None,
     }
+}
+
+/// Whether a column names what came out, as a kind of motion: no sweep sets it.
+pub(super) fn is_outcome(column: &Column) -> bool {
+    column.name == BasinColumn::Basin.name()
+        || Measure::ALL.iter().any(|measure| measure.is_name() && *words::of_key(measure) == *column.name)
 }
 
 /// Rows that share their levels of the `by` columns.
@@ -43,5 +51,11 @@ impl Group {
     pub(super) fn varying_words(&self, groups: &[Self]) -> Vec<String> {
         let varies = |index: &usize| groups.iter().any(|group| group.words[*index] != self.words[*index]);
         (0..self.words.len()).filter(varies).filter_map(|index| self.words[index].clone()).collect()
+    }
+
+    /// What came out, in words.
+    pub(super) fn outcome(&self, by: &[&Column]) -> Vec<String> {
+        let words = self.words.iter().zip(by).filter(|(_, column)| is_outcome(column));
+        words.filter_map(|(word, _)| word.clone()).collect()
     }
 }

@@ -45,8 +45,13 @@ pub(super) fn shared(labels: &[String], columns: &[&str], unit: &str) -> String 
         [first, rest @ ..] if rest.iter().all(|label| label == first) => first.clone(),
         // Different things of one unit share its word, those without a unit the words that their names end with; a legend tells
         // them apart.
-        [first, rest @ ..] if unit.is_empty() => common_ending(columns).unwrap_or_else(|| {
-            rest.iter().fold(first.clone(), |joined, label| format!("{joined}, {}", within_sentence(label)))
+        _ if unit.is_empty() => common_ending(columns).unwrap_or_else(|| {
+            let (joined, ending) = without_common_words(labels);
+            let joined = joined
+                .iter()
+                .skip(1)
+                .fold(joined[0].clone(), |joined, label| format!("{joined}, {}", within_sentence(label)));
+            joined + &ending
         }),
         _ => words::of_unit(unit).to_owned(),
     }
@@ -59,6 +64,17 @@ fn common_ending(columns: &[&str]) -> Option<String> {
     let ends_all =
         |from: &usize| rest.iter().all(|name| name.split('_').collect::<Vec<_>>().ends_with(&words[*from..]));
     (0..words.len()).find(ends_all).map(|from| words[from..].join(" "))
+}
+
+/// Labels without the words that all of them end with, as `per 100 cycles`, and these words.
+fn without_common_words(labels: &[String]) -> (Vec<String>, String) {
+    let words: Vec<Vec<&str>> = labels.iter().map(|label| label.split(' ').collect()).collect();
+    let shortest = words.iter().map(Vec::len).min().unwrap_or(0);
+    let alike = |back: &usize| words.iter().all(|label| label[label.len() - back] == words[0][words[0].len() - back]);
+    // Of each label a word is left.
+    let count = (1..shortest).take_while(alike).count();
+    let ending: String = words[0][words[0].len() - count..].iter().map(|word| format!(" {word}")).collect();
+    (words.iter().map(|label| label[..label.len() - count].join(" ")).collect(), ending)
 }
 
 /// First letter in lower case, unless the word is an abbreviation.

@@ -113,7 +113,7 @@ impl Legend {
         let mut entries = Vec::new();
         let markers = panel.markers || panel.band == Band::Seeds;
         let points = quoted.iter().any(|one| one.is_point());
-        if curves.len() > 1 || band || points {
+        if curves.len() > 1 || band || points || curves.iter().any(|curve| curve.is_outcome) {
             entries.extend(by_trait(curves, markers, panel.joined).unwrap_or_else(|| {
                 let line = |curve: &Curve| Entry {
                     sign: match curve.join {

@@ -6,13 +6,11 @@
 use std::collections::BTreeMap;
 
 use crate::experiment::{Band, Experiment, LineColour, Panel, START_LISTS, Stability};
-use crate::measure::Measure;
 use crate::table::{Column, Data, Table};
-use crate::text::words;
 
 use super::branch::Branches;
 use super::error::FigureError;
-use super::group::{Group, number};
+use super::group::{Group, is_outcome, number};
 use super::style::Look;
 use super::{label, searches};
 
@@ -114,6 +112,8 @@ pub(super) struct Curve {
     pub samples: Vec<Sample>,
     /// How many searches the band spans; 0 where it is none of theirs.
     pub seeds: usize,
+    /// It is alone and named by what came out, which a legend says.
+    pub is_outcome: bool,
     pub at_infinity: Option<AtInfinity>,
 }
 
@@ -213,6 +213,7 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
     // Only what shows takes a colour.
     let shows = |group: &&Group| drawn.iter().any(|y| group.rows.iter().any(|&row| holds(y, row)));
     let shown: Vec<&Group> = groups.iter().filter(shows).collect();
+    let is_outcome = groups.len() == 1 && by.iter().any(|column| is_outcome(column));
     let mut curves = Vec::new();
     for (index, axis) in panel.y.iter().enumerate() {
         let y = source.column(&axis.column)?;
@@ -220,7 +221,8 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
         for (number, group) in groups.iter().enumerate() {
             let traits = Traits::new(source, index, panel.y.len(), &shown, group);
             let mut words = if panel.y.len() > 1 { vec![source.label(axis)?] } else { Vec::new() };
-            words.extend(group.varying_words(&groups));
+            // What came out is worth a name, even if nothing else did.
+            words.extend(if groups.len() == 1 { group.outcome(&by) } else { group.varying_words(&groups) });
             let join = join(x, y);
             let look = match join {
                 Join::Dots => Look::of_dots(number, groups.len(), group.rows.len()),
@@ -231,7 +233,8 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
                     let look = look.with_stability(stability);
                     let samples = branches.samples(x, y, &group.rows, stability);
                     let name = Name::with_stability(&words, stability);
-                    let curve = Curve { group: number, name, look, join, samples, seeds: 0, at_infinity: None };
+                    let curve =
+                        Curve { group: number, name, look, join, samples, seeds: 0, is_outcome, at_infinity: None };
                     curves.extend(Some(curve).filter(Curve::shows));
                 }
                 continue;
@@ -242,7 +245,8 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
                 None => Name { hue: source.label(axis)?, dash: None },
                 Some((hue, rest)) => Name { hue: hue.clone(), dash: (!rest.is_empty()).then(|| rest.join(", ")) },
             };
-            let mut curve = Curve { group: number, name, look, join, samples: Vec::new(), seeds: 0, at_infinity: None };
+            let mut curve =
+                Curve { group: number, name, look, join, samples: Vec::new(), seeds: 0, is_outcome, at_infinity: None };
             match (panel.band, &x.data, &y.data) {
                 (Band::Seeds, Data::FloatList(steps), Data::FloatList(values)) => {
                     let search = |&row: &usize| Some((steps.get(row)?.as_slice(), values.get(row)?.as_slice()));
@@ -388,9 +392,6 @@ fn fill(
 impl Group {
     /// Where rows lie that differ from these in what came out alone, as their kind of motion: no line leads past them.
     fn others_between(&self, x: &Column, by: &[&Column], groups: &[Self]) -> Vec<f64> {
-        let is_outcome = |column: &Column| {
-            Measure::ALL.iter().any(|measure| measure.is_name() && *words::of_key(measure) == *column.name)
-        };
         let beside = |other: &&Self| {
             let differ = || by.iter().enumerate().filter(|(index, _)| other.words[*index] != self.words[*index]);
             differ().next().is_some() && differ().all(|(_, column)| is_outcome(column))

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use crate::experiment::Band;
+use crate::experiment::{Band, Joined};
 use crate::text::number::compact;
 
 use super::attributes::{Attributes, Labelled};
@@ -70,14 +70,15 @@ pub(super) fn panel(
     contact::draw(sheet, panel, frame);
     let [x, y] = [(&panel.x, &panel.x_label), (&panel.y, &panel.y_label)].map(|(axis, label)| Labelled { axis, label });
     sheet.group(&Attributes::frame(frame, UNITS, x, y), || curves(sheet, panel, frame));
-    for point in &panel.special_points {
-        if let Some(at) = panel.place(frame, point.x, point.y) {
-            marker(sheet, at, Look::of_special(point.kind));
+    for sign in panel.signs(frame) {
+        if sign.at != sign.of {
+            sheet.line(&[sign.of, sign.at], Pen::solid(INK, GRID));
         }
+        marker(sheet, sign.at, Look::of_special(sign.kind));
     }
     peak_marks(sheet, panel, frame, &mut taken);
-    for one in &panel.quoted {
-        one.draw(sheet, panel, frame);
+    for (number, one) in panel.quoted.iter().enumerate() {
+        one.draw(number, sheet, panel, frame);
     }
     for (number, one) in panel.quoted.iter().enumerate() {
         one.write(number, sheet, panel, frame, &mut taken);
@@ -120,7 +121,9 @@ fn curve(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, curve: &Curve) {
     for stretch in panel.stretches(frame, curve) {
         // A point between two gaps would be no line at all.
         if let [alone] = stretch.as_slice() {
-            sheet.disc(*alone, CURVE, curve.look.color);
+            // A branch of one point is all that is seen of it.
+            let size = if panel.spec.joined == Joined::AlongBranches { 1.6 * CURVE } else { CURVE };
+            sheet.disc(*alone, size, curve.look.color);
         }
         sheet.line(&stretch, pen);
         let marked = match (panel.spec.markers, panel.spec.band) {

@@ -3,9 +3,10 @@
 use std::collections::BTreeSet;
 
 use crate::experiment::{self, Band};
+use crate::table::Data;
 
 use super::axis::{Axis, Extent, Room, Tick};
-use super::branch::{SpecialPoint, special_points};
+use super::branch::{Sign, SpecialPoint, signs, special_points};
 use super::canvas::text_width;
 use super::contact::{self, Contact, contacts};
 use super::error::FigureError;
@@ -129,7 +130,16 @@ impl<'a> Panel<'a> {
 
         let seen = samples().filter(|sample| sample.y.is_finite()).map(|sample| sample.x);
         let wanted = quoted.iter().filter_map(|one| one.x()).chain(spec.x.reach.into_iter().flatten());
-        let marked = spec.markers || spec.band == Band::Seeds || quoted.iter().any(|one| one.is_point());
+        let special_points: Vec<SpecialPoint> =
+            special_points(source, spec)?.into_iter().filter(|point| spec.x.shows(point.x)).collect();
+        // Of a cloud no point lies half beyond the frame.
+        let is_cloud = matches!(source.column(&spec.x.column)?.data, Data::FloatList(_))
+            && curves.iter().any(|curve| curve.join == Join::Dots);
+        let marked = spec.markers
+            || spec.band == Band::Seeds
+            || quoted.iter().any(|one| one.is_point())
+            || is_cloud
+            || !special_points.is_empty();
         let x_reach = match spec.x.range {
             Some([least, largest]) => Reach { extent: Extent { least, largest }, room: Room::Tight },
             None => Reach {
@@ -149,8 +159,6 @@ impl<'a> Panel<'a> {
         let visible = VISIBLE_CONTACT * (x_reach.extent.largest - x_reach.extent.least);
         legend.name_instants(contacts.iter().any(|contact| contact.to - contact.from > visible), impulses.is_some());
         let strips = strip::strips(source, spec, &curves)?;
-        let mut special_points = special_points(source, spec)?;
-        special_points.retain(|point| spec.x.shows(point.x));
         legend.name_special_points(&special_points);
         let mut y_extent = quoted.iter().filter_map(|one| one.y()).fold(y_extent, |extent, y| extent.with(y, y_scale));
         for guide in &spec.guides {
@@ -241,6 +249,18 @@ impl<'a> Panel<'a> {
         Some(frame.at(self.x.share(x)?, self.y.share(y)?))
     }
 
+    /// The signs of the special points.
+    pub(super) fn signs(&self, frame: &Rect) -> Vec<Sign> {
+        if self.special_points.is_empty() {
+            return Vec::new();
+        }
+        let points = self.special_points.iter();
+        let points = points.filter_map(|point| Some((self.place(frame, point.x, point.y)?, point.kind)));
+        let stretches = self.curves.iter().flat_map(|curve| self.stretches(frame, curve));
+        let alone: Vec<Point> = stretches.filter(|stretch| stretch.len() == 1).flatten().collect();
+        signs(points, &alone, frame)
+    }
+
     /// A curve's dots, those that fall on one place once.
     pub(super) fn dots(&self, frame: &Rect, curve: &Curve) -> Vec<Point> {
         let mut seen = BTreeSet::new();
@@ -303,11 +323,11 @@ impl<'a> Panel<'a> {
             let (top, bottom) = (frame.top + contact::BAR, frame.bottom - contact::BAR);
             obstacles.boxes.extend([Rect { bottom: top, ..*frame }, Rect { top: bottom, ..*frame }]);
         }
-        for point in &self.special_points {
-            let sign = self.place(frame, point.x, point.y);
-            obstacles
-                .boxes
-                .extend(sign.map(|at| Rect { left: at.x, top: at.y, right: at.x, bottom: at.y }.grown(MARKER)));
+        let around = |at: Point| Rect { left: at.x, top: at.y, right: at.x, bottom: at.y }.grown(MARKER);
+        obstacles.boxes.extend(self.signs(frame).into_iter().map(|sign| around(sign.at)));
+        if self.spec.markers {
+            let samples = self.curves.iter().filter(|curve| curve.join == Join::Line).flat_map(|curve| &curve.samples);
+            obstacles.boxes.extend(samples.filter_map(|sample| self.place(frame, sample.x, sample.y)).map(around));
         }
         for (number, one) in self.quoted.iter().enumerate() {
             one.obstacle(number, self, frame, &mut obstacles);

@@ -6,12 +6,17 @@ use super::canvas::{Anchor, Lettering, Pen, Sheet, text_width};
 use super::geometry::{Point, Rect};
 use super::legend::Obstacles;
 use super::panel::Panel;
-use super::style::{CURVE, GRID, GUIDE, INK, NOTE_TEXT, PAPER, QUOTED, SPACE};
+use super::style::{CURVE, GRID, GUIDE, INK, NOTE_TEXT, PAPER, QUOTED, SPACE, TICK};
 use crate::experiment::{self, AxisScale};
 use crate::text::number::compact;
 
 /// Dash of what stands for a missing coordinate.
 pub(super) const DASH: &[f64] = &[16.0, 8.0];
+/// Lines nearer than this look like one, unless the dashes of one begin so much later.
+const NEAR: f64 = 9.0;
+const LATE: f64 = 12.0;
+/// Room around a label with nothing in its way.
+const ROOM: f64 = 6.0;
 /// A value far outside of the curves would leave them no room: how many times their own range it may take.
 const STRETCH: f64 = 3.0;
 /// Where the bar of the first line of a panel stands, as a share of the frame from its end, and the distance of the next.
@@ -180,11 +185,19 @@ impl Quoted {
         }
     }
 
-    /// The line or the diamond.
-    pub(super) fn draw(&self, sheet: &Sheet, panel: &Panel<'_>, frame: &Rect) {
+    /// The line or the diamond, as `number` of the panel.
+    pub(super) fn draw(&self, number: usize, sheet: &Sheet, panel: &Panel<'_>, frame: &Rect) {
         let pen = Pen { color: INK, width: 1.2 * GUIDE, dash: DASH };
         match self.line(panel, frame) {
-            Some(line) => sheet.line(&line, pen),
+            Some([from, to]) => {
+                // Dashes of lines that almost coincide lie beside the gaps of the other: two lines are seen.
+                let near = |other: &Point| (other.x - from.x).abs() < NEAR && (other.y - from.y).abs() < NEAR;
+                let before = panel.quoted[..number].iter().filter_map(|one| one.line(panel, frame));
+                let late = if before.filter(|[other, _]| near(other)).count() % 2 == 1 { LATE } else { 0.0 };
+                let (dx, dy) = (to.x - from.x, to.y - from.y);
+                let share = late / libm::hypot(dx, dy);
+                sheet.line(&[Point { x: from.x + share * dx, y: from.y + share * dy }, to], pen)
+            }
             None => diamond(sheet, self.place(panel, frame), QUOTED),
         }
     }
@@ -196,25 +209,59 @@ impl Quoted {
         }
         let at = self.place(panel, frame);
         let text = self.text(number, panel, frame);
-        let width = text_width(&text, NOTE_TEXT);
-        let places = self.label_places(at, width, frame);
-        let inside = || places.iter().filter(|place| place.lies_within(frame));
+        let forms = forms(&text);
+        let places: Vec<Vec<Rect>> = forms.iter().map(|lines| self.label_places(at, lines, frame)).collect();
         let others = || panel.quoted.iter().enumerate().filter(|(other, _)| *other != number);
         // There it would read as the label of another line.
         let strays = |place: &Rect| others().any(|(other, one)| one.claims(place, other, panel, frame));
-        let own = inside().filter(|place| !strays(place));
-        let place = taken.clearest(own, 1.0).or_else(|| taken.clearest(inside(), 1.0)).or_else(|| inside().next());
-        let Some(place) = place.copied() else { return };
+        let crosses = |place: &Rect| {
+            let (from, to) = self.lead_to(at, place);
+            let other_lines = others().filter_map(|(_, one)| one.line(panel, frame));
+            // What surrounds its own place is not on its way.
+            let boxes = taken.boxes.iter().filter(|taken| !taken.meets(from, from));
+            other_lines.map(spanned).chain(boxes.copied()).any(|other| other.meets(from, to))
+        };
+        let of_form = |form: usize, room: f64| {
+            let room = frame.grown(-room);
+            places[form].iter().filter(move |place| place.lies_within(&room)).map(move |place| (form, place))
+        };
+        let own = |form: usize, room: f64| of_form(form, room).filter(|(_, place)| !strays(place));
+        // Clear of the ticks and with nothing on its way, in one line or in two; else as little in the way as may be.
+        let free = |form: usize, room: f64| own(form, room).filter(|(_, place)| taken.leave_free(&place.grown(ROOM)));
+        let clear = |form: usize| free(form, TICK).find(|(_, place)| !crosses(place));
+        let chosen = (0..forms.len())
+            .find_map(clear)
+            .or_else(|| (0..forms.len()).find_map(|form| free(form, TICK).next()))
+            .or_else(|| free(0, 0.0).next())
+            .or_else(|| Some((0, taken.clearest(own(0, 0.0).map(|(_, place)| place), 1.0)?)))
+            .or_else(|| Some((0, taken.clearest(of_form(0, 0.0).map(|(_, place)| place), 1.0)?)))
+            .or_else(|| of_form(0, 0.0).next());
+        let Some((form, place)) = chosen.map(|(form, place)| (form, *place)) else { return };
         taken.boxes.push(place);
-        match self.at {
-            QuotedAt::Place(_) => lead(sheet, Point { y: place.at(0.0, 0.5).y, ..at }, &place, 0.0),
-            QuotedAt::Level(_) => lead(sheet, Point { x: place.at(0.5, 0.0).x, ..at }, &place, 0.0),
-            QuotedAt::Point { .. } => lead(sheet, at, &place, QUOTED),
-        }
+        let (from, to) = self.lead_to(at, &place);
+        lead(sheet, from, to, if self.is_point() { Some(QUOTED) } else { None });
         let upright = place.height() > place.width();
-        let start = if upright { place.at(0.5, 0.0) } else { place.at(0.0, 0.5) };
-        let lettering = Lettering { text: &text, size: NOTE_TEXT, anchor: Anchor::Left, upright, color: INK };
-        sheet.text_over_lines(start, &lettering);
+        // A text beside its line or diamond ends there, or begins there.
+        let ends_there = !upright && !matches!(self.at, QuotedAt::Level(_)) && place.right <= at.x;
+        for (line, text) in (0_u32..).zip(&forms[form]) {
+            let down = (f64::from(line) + 0.5) * place.height() / forms[form].len() as f64;
+            let (start, anchor) = match (upright, ends_there) {
+                (true, _) => (place.at(0.5, 0.0), Anchor::Left),
+                (false, true) => (Point { x: place.right, y: place.top + down }, Anchor::Right),
+                (false, false) => (Point { x: place.left, y: place.top + down }, Anchor::Left),
+            };
+            sheet.text_over_lines(start, &Lettering { text, size: NOTE_TEXT, anchor, upright, color: INK });
+        }
+    }
+
+    /// The line that leads from what is named to its label in this place.
+    fn lead_to(&self, at: Point, place: &Rect) -> (Point, Point) {
+        let from = match self.at {
+            QuotedAt::Place(_) => Point { y: place.at(0.0, 0.5).y, ..at },
+            QuotedAt::Level(_) => Point { x: place.at(0.5, 0.0).x, ..at },
+            QuotedAt::Point { .. } => at,
+        };
+        (from, Point { x: from.x.clamp(place.left, place.right), y: from.y.clamp(place.top, place.bottom) })
     }
 
     /// Whether a label in this place would seem to be its own, as `number` of the panel: across its line, or in the row of its bar.
@@ -239,26 +286,27 @@ impl Quoted {
         }
     }
 
-    /// Where a label of this width may stand, the best places first; some leave the frame.
-    fn label_places(&self, at: Point, width: f64, frame: &Rect) -> Vec<Rect> {
-        let half = NOTE_TEXT / 2.0;
+    /// Where a label of these lines may stand, the best places first; some leave the frame.
+    fn label_places(&self, at: Point, lines: &[&str], frame: &Rect) -> Vec<Rect> {
+        let width = lines.iter().map(|line| text_width(line, NOTE_TEXT)).fold(0.0, f64::max);
+        let half = NOTE_TEXT * lines.len() as f64 / 2.0;
         let about = |x: f64, y: f64| Rect { left: x, top: y - half, right: x + width, bottom: y + half };
         let steps = |count: u8| (0..=count).map(move |step| f64::from(step) / f64::from(count));
         match self.at {
             QuotedAt::Place(_) => {
                 let aside = [at.x + SPACE / 2.0, at.x - SPACE / 2.0 - width];
                 let down =
-                    |share: f64, height: f64| frame.top + SPACE / 2.0 + share * (frame.height() - height - SPACE);
+                    |share: f64, height: f64| frame.top + SPACE + share * (frame.height() - height - 2.0 * SPACE);
                 let level = steps(30).flat_map(|share| aside.map(|x| about(x, down(share, 2.0 * half) + half)));
                 // Along the line, where another one stands in the way across.
                 let beside = [at.x + SPACE / 2.0, at.x - SPACE / 2.0 - 2.0 * half];
-                let along = steps(30).flat_map(|share| {
+                let along = steps(30).filter(|_| lines.len() == 1).flat_map(|share| {
                     let top = down(share, width);
                     beside.map(|left| Rect { left, top, right: left + 2.0 * half, bottom: top + width })
                 });
                 // Beyond other lines that stand close, with a line that leads there.
-                let further = (1_u8..=8).flat_map(|times| {
-                    let away = SPACE / 2.0 + f64::from(times) * 2.0 * QUOTED;
+                let further = (2_u8..=20).flat_map(|times| {
+                    let away = SPACE / 2.0 + f64::from(times) * QUOTED;
                     steps(30).flat_map(move |share| {
                         [at.x + away, at.x - away - width].map(|x| about(x, down(share, 2.0 * half) + half))
                     })
@@ -276,7 +324,7 @@ impl Quoted {
                 rows.into_iter().flat_map(beside).collect()
             }
             QuotedAt::Point { .. } => {
-                let away = QUOTED + SPACE / 2.0;
+                let away = QUOTED + SPACE / 2.0 + 1.1 * ROOM;
                 let rows = [0.0, 1.0, -1.0, 1.5, -1.5, 2.5, -2.5, 3.5, -3.5, 4.5, -4.5];
                 let beside = |further: f64| {
                     let aside = [at.x + away + further, at.x - away - further - width];
@@ -300,15 +348,30 @@ pub(super) fn bar(sheet: &Sheet, ends: [Point; 2]) {
     ends.into_iter().for_each(|end| cap(sheet, end, ends[0].x == ends[1].x));
 }
 
-/// A line to a label from what it names, where the two are apart; it begins at this distance.
-fn lead(sheet: &Sheet, at: Point, label: &Rect, from: f64) {
-    let near = Point { x: at.x.clamp(label.left, label.right), y: at.y.clamp(label.top, label.bottom) };
-    let (dx, dy) = (near.x - at.x, near.y - at.y);
+/// A label in one line, and in two where it has a part after a comma.
+fn forms(text: &str) -> Vec<Vec<&str>> {
+    let two = text.split_once(", ").map(|(first, _)| text.split_at(first.len() + 1));
+    let two = two.map(|(first, rest)| vec![first, rest.trim_start()]);
+    std::iter::once(vec![text]).chain(two).collect()
+}
+
+/// A line to a label from what it names, where the two are apart. It begins at this distance, or else with a dot: the line that is named
+/// may not be the only one that it meets.
+fn lead(sheet: &Sheet, at: Point, label: Point, distance: Option<f64>) {
+    let (dx, dy) = (label.x - at.x, label.y - at.y);
     let length = libm::hypot(dx, dy);
     if length > 2.0 * QUOTED {
-        let share = from / length;
-        sheet.line(&[Point { x: at.x + share * dx, y: at.y + share * dy }, near], Pen::solid(INK, GRID));
+        let share = distance.unwrap_or(0.0) / length;
+        sheet.line(&[Point { x: at.x + share * dx, y: at.y + share * dy }, label], Pen::solid(INK, GRID));
+        if distance.is_none() {
+            sheet.disc(at, CURVE, INK);
+        }
     }
+}
+
+/// What a level or upright stretch takes.
+fn spanned([a, b]: [Point; 2]) -> Rect {
+    Rect { left: a.x.min(b.x), top: a.y.min(b.y), right: a.x.max(b.x), bottom: a.y.max(b.y) }
 }
 
 /// The end of a bar.

@@ -6,7 +6,7 @@ use super::mapping::word;
 use super::name::{Column, in_unit_of};
 use super::printed::Printed;
 use super::selection::same;
-use super::text::{significant, with_unit};
+use super::text::with_unit;
 use super::view::{Absence, Cell, Line, View};
 use crate::experiment::At;
 
@@ -78,8 +78,8 @@ impl Stretch {
             Absence::Broken(format!(
                 "`{}` goes from {} to {}, not to {}",
                 self.over,
-                significant(first, 4),
-                significant(last, 4),
+                with_unit(first, 4, &line.over_unit),
+                with_unit(last, 4, &line.over_unit),
                 with_unit(end, 4, &line.over_unit)
             ))
         };
@@ -111,8 +111,8 @@ impl Interpolated {
             return Err(Absence::Broken(format!(
                 "`{}` goes from {} to {}, past {}",
                 self.over,
-                significant(first, 4),
-                significant(last, 4),
+                with_unit(first, 4, &line.over_unit),
+                with_unit(last, 4, &line.over_unit),
                 self.at.text()
             )));
         }

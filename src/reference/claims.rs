@@ -8,7 +8,7 @@ use super::mapping::{Reads, claim, mapping};
 use super::name::{Column, in_unit, in_unit_of};
 use super::selection::is_number;
 use super::tally::Shown;
-use super::text::{percent, significant};
+use super::text::{in_scale_of, percent};
 use crate::experiment::At;
 
 claim! {
@@ -277,11 +277,11 @@ impl Within {
         }
     }
 
-    /// For a reader.
-    pub(crate) fn words(&self) -> String {
+    /// For a reader, beside numbers of this unit of which the largest is `largest`.
+    pub(crate) fn words(&self, largest: f64, unit: &str) -> String {
         match self {
             Self::Relative(fraction) => percent(*fraction),
-            Self::Absolute(distance) => significant(*distance, 3),
+            Self::Absolute(distance) => in_scale_of(largest, *distance, 3, unit),
         }
     }
 }

@@ -14,11 +14,12 @@ use super::place::{best_place, grows_towards};
 use super::predicate::Predicate;
 use super::shape::{greatest_at_end, levels_off, linear, monotone, onsets, peaks};
 use super::tally::{Decision, Outcome, Tally, strict};
-use super::text::{apart as told_apart, listed, percent, significant, symbol, with_unit};
+use super::text::{
+    apart as told_apart, in_scale_of, listed, percent, place, significant, symbol, with_error_in_scale_of, with_unit,
+};
 use super::view::{Absence, Cell, Line, View};
 use super::words;
 use crate::measure::column_words;
-use crate::text::number::with_uncertainty;
 
 /// Decides a claim over the rows that the view means.
 pub(crate) fn decide(predicate: &Predicate, view: &View<'_>) -> Result<Decision, Absence> {
@@ -192,9 +193,18 @@ fn equal(claim: &Equal, view: &View<'_>) -> Result<Decision, Absence> {
         }
     }
     let what = words::common(&claim.values).unwrap_or_default();
-    let found =
-        format!("{what}{} ({} allowed)", difference(&values, &claim.values, &claim.within), claim.within.words());
+    let found = format!(
+        "{what}{} ({} allowed)",
+        difference(&values, &claim.values, &claim.within),
+        allowed(&values, &claim.within)
+    );
     Ok(Decision { found, ..tally.decision()? })
+}
+
+/// A distance that is allowed, or required, between these numbers, in the unit in which they are shown.
+fn allowed(values: &[Extracted], within: &Within) -> String {
+    let largest = values.iter().map(|one| one.value.abs()).fold(0.0, f64::max);
+    within.words(largest, unit_of(values))
 }
 
 /// Of numbers that are equal to the last bit, of which only the first digits are shown.
@@ -221,7 +231,7 @@ fn difference(values: &[Extracted], sources: &[Extraction], within: &Within) -> 
     }
     let apart = match within {
         Within::Relative(_) => percent((high - low) / low.abs().max(high.abs())),
-        Within::Absolute(_) => significant(high - low, 3),
+        Within::Absolute(_) => in_scale_of(low.abs().max(high.abs()), high - low, 3, unit_of(values)),
     };
     // The outermost two differ to the eye; those between them need not.
     let ends = told_apart(&[(low, &values[0].unit), (high, &values[0].unit)]);
@@ -259,8 +269,11 @@ fn apart(claim: &Apart, view: &View<'_>) -> Result<Decision, Absence> {
         }
     }
     let what = words::common(&claim.values).unwrap_or_default();
-    let found =
-        format!("{what}{} (at least {} required)", difference(&values, &claim.values, &claim.by), claim.by.words());
+    let found = format!(
+        "{what}{} (at least {} required)",
+        difference(&values, &claim.values, &claim.by),
+        allowed(&values, &claim.by)
+    );
     Ok(Decision { found, ..tally.decision()? })
 }
 
@@ -273,7 +286,10 @@ fn between(claim: &Between, view: &View<'_>) -> Result<Decision, Absence> {
     if let Some(to) = claim.to {
         tally.require(to - value.value, value.run, String::new);
     }
-    let end = |x: f64| with_unit(x, 4, &value.unit);
+    // The number and its bounds in one unit.
+    let ends = [claim.from, claim.to].into_iter().flatten();
+    let largest = ends.fold(value.value.abs(), |largest, end| largest.max(end.abs()));
+    let end = |x: f64| in_scale_of(largest, x, 4, &value.unit);
     let required = match (claim.from, claim.to) {
         (Some(from), Some(to)) => format!("{} to {}", end(from), end(to)),
         (Some(from), None) => format!("at least {}", end(from)),
@@ -282,11 +298,9 @@ fn between(claim: &Between, view: &View<'_>) -> Result<Decision, Absence> {
     };
     // Below the digits shown it is rounding and not worth a reader's time.
     let shown = if value.run > 1e-4 * value.value.abs() {
-        let (number, error) = with_uncertainty(value.value, COVERAGE * value.run);
-        let unit = if value.unit.is_empty() { String::new() } else { format!(" {}", value.unit) };
-        format!("{number} ± {error}{unit}")
+        with_error_in_scale_of(largest, value.value, COVERAGE * value.run, &value.unit)
     } else {
-        with_unit(value.value, 4, &value.unit)
+        end(value.value)
     };
     let what = words::common(std::slice::from_ref(&claim.value)).unwrap_or_default();
     let found = format!("{what}{shown} (required: {required})");
@@ -330,12 +344,10 @@ fn columns_agree(claim: &ColumnsAgree, view: &View<'_>) -> Result<Decision, Abse
 
 fn lines_agree(claim: &LinesAgree, view: &View<'_>) -> Result<Decision, Absence> {
     let all = lines(view, claim.source(), &claim.of, &claim.over, &claim.by)?;
-    let unit = all.first().map_or("", |(_, line)| line.unit.as_str());
+    let (unit, over_unit) = all.first().map_or(("", ""), |(_, line)| (line.unit.as_str(), line.over_unit.as_str()));
     let mut tally = Tally::new("");
     for (x, cells) in common(&all)? {
-        agree(&mut tally, &cells, &claim.within, unit, || {
-            format!(" at {} = {}", symbol(&claim.over), significant(x, 4))
-        });
+        agree(&mut tally, &cells, &claim.within, unit, || format!(" at {}", place(&claim.over, x, 4, over_unit)));
     }
     tally.decision()
 }
@@ -350,19 +362,20 @@ fn line_above(claim: &LineAbove, view: &View<'_>) -> Result<Decision, Absence> {
         lead.y.sort_by(|a, b| b.value.total_cmp(&a.value));
         let middle = lead.y[points / 2];
         tally.require_strictly(middle.value, middle.run, || {
-            format!("ahead at {ahead} of {points} points, median lead {}", significant(middle.value, 3))
+            format!("ahead at {ahead} of {points} points, median lead {}", with_unit(middle.value, 3, &lead.unit))
         });
         return tally.decision();
     }
     for (x, ahead) in lead.x.iter().zip(&lead.y) {
         tally.require_strictly(ahead.value, ahead.run, || {
-            format!("smallest lead {} at {} = {}", significant(ahead.value, 3), symbol(&claim.over), significant(*x, 4))
+            let at = place(&claim.over, *x, 4, &lead.over_unit);
+            format!("smallest lead {} at {at}", with_unit(ahead.value, 3, &lead.unit))
         });
     }
     tally.decision()
 }
 
-fn agree(tally: &mut Tally, cells: &[Cell], within: &Within, unit: &str, place: impl FnOnce() -> String) {
+fn agree(tally: &mut Tally, cells: &[Cell], within: &Within, unit: &str, at: impl FnOnce() -> String) {
     if let Some((low, high)) = extremes(cells) {
         let apart = high.value - low.value;
         let allowed = within.allows(low.value, high.value);
@@ -371,9 +384,9 @@ fn agree(tally: &mut Tally, cells: &[Cell], within: &Within, unit: &str, place: 
         tally.require_in(scale, shown, allowed - apart, joint([low.value, low.run], [high.value, high.run]), || {
             let shown = match within {
                 Within::Relative(_) => percent(apart / low.value.abs().max(high.value.abs())),
-                Within::Absolute(_) => significant(apart, 3),
+                Within::Absolute(_) => in_scale_of(apart.max(allowed), apart, 3, unit),
             };
-            format!("up to {shown} apart{} ({} allowed)", place(), within.words())
+            format!("up to {shown} apart{} ({} allowed)", at(), within.words(apart.max(allowed), unit))
         });
     }
 }
@@ -412,16 +425,15 @@ fn greatest_point(claim: &GreatestPoint, view: &View<'_>) -> Result<Decision, Ab
     let Some((&other, &most)) = elsewhere else {
         return Err(Absence::NoRow(format!("the list `{}` has one point alone", claim.over)));
     };
-    let unit = view.unit(&rows, &claim.of)?;
+    let (unit, over_unit) = (view.unit(&rows, &claim.of)?, view.unit(&rows, &claim.over)?);
     let mut tally = Tally::new("");
     tally.require_strictly(value - most, 0.0, || {
         format!(
-            "{} at {} = {}; elsewhere at most {}, at {}",
+            "{} at {}; elsewhere at most {}, at {}",
             with_unit(value, 4, unit),
-            symbol(&claim.over),
-            significant(here, 4),
+            place(&claim.over, here, 4, over_unit),
             with_unit(most, 4, unit),
-            significant(other, 4)
+            with_unit(other, 4, over_unit)
         )
     });
     tally.decision()

@@ -4,7 +4,7 @@
 use super::extraction::{Along, Cells, Direction, Extraction, Meeting, NearestPassage, Parting, Side};
 use super::line::{Position, common, lines};
 use super::selection::same;
-use super::text::{percent, significant, with_unit};
+use super::text::{percent, with_unit};
 use super::view::{Absence, Cell, Line, View};
 use crate::measure::column_words;
 use crate::table::BASELINE;
@@ -117,6 +117,7 @@ impl Extraction {
             }
             Self::Crossing(word) => {
                 let line = view.line(word.source(), &word.of, &word.over, None)?;
+                let unit = line.unit.clone();
                 let (line, level) = match word.direction {
                     Direction::Increasing => (line, word.level),
                     Direction::Decreasing => (line.inverted(), -word.level),
@@ -125,7 +126,7 @@ impl Extraction {
                     Absence::Nowhere(format!(
                         "the {} does not cross {}",
                         column_words(&word.of),
-                        significant(word.level, 4)
+                        with_unit(word.level, 4, &unit)
                     ))
                 })?;
                 Extracted::place(position, line.over_unit)

@@ -1,7 +1,7 @@
 //! Features of lines: where the top is and how well the grid knows it, where two lines part, how many peaks there are.
 
 use super::selection::{Allowed, same};
-use super::text::{significant, symbol};
+use super::text::{place, with_unit};
 use super::view::{Absence, Cell, Line, Source, View};
 use crate::experiment::At;
 use crate::measure::column_words;
@@ -152,14 +152,14 @@ impl Line {
     pub(crate) fn onset(&self, above: f64) -> Result<(usize, Position), Absence> {
         match self.y.iter().position(|cell| cell.value > above) {
             None => {
-                Err(Absence::Nowhere(format!("the {} never exceeds {}", column_words(&self.of), significant(above, 4))))
+                let level = with_unit(above, 4, &self.unit);
+                Err(Absence::Nowhere(format!("the {} never exceeds {level}", column_words(&self.of))))
             }
             Some(0) => Err(Absence::Nowhere(format!(
-                "the {} exceeds {} from the first point on, {} = {}: its onset lies below the sweep",
+                "the {} exceeds {} from the first point on, {}: its onset lies below the sweep",
                 column_words(&self.of),
-                significant(above, 4),
-                symbol(&self.over),
-                significant(self.x[0], 4)
+                with_unit(above, 4, &self.unit),
+                place(&self.over, self.x[0], 4, &self.over_unit)
             ))),
             Some(i) => Ok((i, Position { x: self.x[i], u: (self.x[i] - self.x[i - 1]) / 2.0 })),
         }

@@ -3,9 +3,8 @@
 use super::claims::{GreatestAtEnd, LevelsOff, Linear, Monotone, Onsets, Part, Peaks};
 use super::extraction::{Direction, Side};
 use super::tally::{Decision, Outcome, Tally};
-use super::text::{percent, significant, symbol, with_unit};
+use super::text::{percent, place, symbol, with_unit};
 use super::view::{Absence, View};
-use crate::text::number::signed;
 
 pub(crate) fn monotone(claim: &Monotone, view: &View<'_>) -> Result<Decision, Absence> {
     let mut line = view.line(claim.source(), &claim.of, &claim.over, None)?;
@@ -22,16 +21,17 @@ pub(crate) fn monotone(claim: &Monotone, view: &View<'_>) -> Result<Decision, Ab
     line.y = line.y[part].to_vec();
     if line.x.len() < 2 {
         return Err(Absence::Nowhere(format!(
-            "that part of the line is one point, {} = {}",
-            symbol(&claim.over),
-            significant(line.x[0], 4)
+            "that part of the line is one point, {}",
+            place(&claim.over, line.x[0], 4, &line.over_unit)
         )));
     }
     let line = if claim.direction == Direction::Increasing { line } else { line.inverted() };
     let mut tally = Tally::of_range(range);
     let (first, last) = (line.y[0], line.y[line.y.len() - 1]);
     tally.require_strictly(last.value - first.value, libm::hypot(last.run, first.run), || {
-        format!("changes by {} from end to end", signed(claim.direction.sign() * (last.value - first.value), 3))
+        let change = claim.direction.sign() * (last.value - first.value);
+        let sign = if change > 0.0 { "+" } else { "" };
+        format!("changes by {sign}{} from end to end", with_unit(change, 3, &line.unit))
     });
     let (goes, turns) = match claim.direction {
         Direction::Increasing => ("rises", "falls back"),
@@ -47,10 +47,9 @@ pub(crate) fn monotone(claim: &Monotone, view: &View<'_>) -> Result<Decision, Ab
         }
         tally.require(allowed - back, libm::hypot(cell.run, reached.run), || {
             format!(
-                "{turns} by {} of the range up to {} = {} ({} allowed)",
+                "{turns} by {} of the range up to {} ({} allowed)",
                 percent(back / range),
-                symbol(&claim.over),
-                with_unit(x, 3, &line.over_unit),
+                place(&claim.over, x, 3, &line.over_unit),
                 percent(claim.slack)
             )
         });
@@ -109,9 +108,8 @@ pub(crate) fn levels_off(claim: &LevelsOff, view: &View<'_>) -> Result<Decision,
         let off = (cell.value - last.value).abs();
         tally.require(claim.within * line.range() - off, libm::hypot(cell.run, last.run), || {
             format!(
-                "stays within {2} of its range from {0} = {1} on ({3} allowed)",
-                symbol(&claim.over),
-                significant(claim.from, 4),
+                "stays within {1} of its range from {0} on ({2} allowed)",
+                place(&claim.over, claim.from, 4, &line.over_unit),
                 percent(off / line.range()),
                 percent(claim.within)
             )
@@ -128,11 +126,10 @@ pub(crate) fn greatest_at_end(claim: &GreatestAtEnd, view: &View<'_>) -> Result<
     for (i, cell) in line.y.iter().enumerate().filter(|(i, _)| *i != end) {
         tally.require_strictly(at_end.value - cell.value, libm::hypot(at_end.run, cell.run), || {
             format!(
-                "{} at the end, {} at {} = {}",
+                "{} at the end, {} at {}",
                 with_unit(at_end.value, 4, &line.unit),
                 with_unit(cell.value, 4, &line.unit),
-                symbol(&claim.over),
-                significant(line.x[i], 4)
+                place(&claim.over, line.x[i], 4, &line.over_unit)
             )
         });
     }
@@ -164,7 +161,7 @@ pub(crate) fn peaks(claim: &Peaks, view: &View<'_>) -> Result<Decision, Absence>
             Outcome::Undecided
         }
     });
-    let places: Vec<String> = sure.iter().map(|&x| significant(x, 3)).collect();
+    let places: Vec<String> = sure.iter().map(|&x| with_unit(x, 3, &line.over_unit)).collect();
     let found = match places.len() {
         0 => format!("no peak stands out by {} of the range", percent(claim.prominence)),
         1 => format!("1 peak: {} = {}", symbol(&claim.over), places[0]),
@@ -179,19 +176,19 @@ pub(crate) fn onsets(claim: &Onsets, view: &View<'_>) -> Result<Decision, Absenc
         .iter()
         .map(|onset| {
             let line = view.line(claim.source(), &onset.of, &claim.over, None)?;
-            Ok(line.onset(onset.above)?.1.x)
+            Ok((line.onset(onset.above)?.1.x, line.over_unit))
         })
-        .collect::<Result<Vec<f64>, Absence>>()?;
+        .collect::<Result<Vec<(f64, String)>, Absence>>()?;
     let mut tally = Tally::new("");
     for pair in found.windows(2) {
         // On one grid, a later first point is a later onset, however wide the grid's steps are.
-        tally.require_strictly(pair[1] - pair[0], 0.0, String::new);
+        tally.require_strictly(pair[1].0 - pair[0].0, 0.0, String::new);
     }
     let words: Vec<String> = claim
         .order
         .iter()
         .zip(&found)
-        .map(|(onset, x)| format!("{} from {} = {}", symbol(&onset.of), symbol(&claim.over), significant(*x, 3)))
+        .map(|(onset, (x, unit))| format!("{} from {}", symbol(&onset.of), place(&claim.over, *x, 3, unit)))
         .collect();
     Ok(Decision { found: words.join(", "), ..tally.decision()? })
 }

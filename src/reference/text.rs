@@ -31,7 +31,12 @@ pub(crate) fn percents(fraction: f64, error: f64) -> String {
 
 /// A number and its error with their unit: `0.57 ± 0.33 mm/s`.
 pub(crate) fn with_error(x: f64, error: f64, unit: &str) -> String {
-    let (factor, unit) = scale(x.abs().max(error), unit);
+    with_error_in_scale_of(x.abs().max(error), x, error, unit)
+}
+
+/// A number and its error with their unit, in thousandths where the largest of those that they stand beside is shorter so.
+pub(crate) fn with_error_in_scale_of(largest: f64, x: f64, error: f64, unit: &str) -> String {
+    let (factor, unit) = scale(largest, unit);
     let (value, error) = number::with_uncertainty(factor * x, factor * error);
     if unit.is_empty() { format!("{value} ± {error}") } else { format!("{value} ± {error} {unit}") }
 }
@@ -46,8 +51,13 @@ pub(crate) fn known<K: DeserializeOwned>(column: &str) -> Option<K> {
     serde_json::from_value(serde_json::Value::String(column.into())).ok()
 }
 
+/// Where: `ω = 182.2 rad/s`.
+pub(crate) fn place(column: &str, x: f64, digits: usize, unit: &str) -> String {
+    format!("{} = {}", symbol(column), with_unit(x, digits, unit))
+}
+
 /// A number with its unit, in thousandths where the largest of those that it stands beside is shorter so.
-fn in_scale_of(largest: f64, x: f64, digits: usize, unit: &str) -> String {
+pub(crate) fn in_scale_of(largest: f64, x: f64, digits: usize, unit: &str) -> String {
     let (factor, unit) = scale(largest, unit);
     let number = significant(x * factor, digits);
     if unit.is_empty() { number } else { format!("{number} {unit}") }

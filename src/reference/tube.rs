@@ -94,8 +94,8 @@ impl Curve {
                 "at {} = {}; the tube is ±{} wide in x, ±{} in y",
                 self.over,
                 with_unit(worst.x, 4, &line.over_unit),
-                self.tube.x.words(),
-                self.tube.y.words()
+                self.tube.x.words(worst.x.abs(), &line.over_unit),
+                self.tube.y.words(line.range(), &line.unit)
             ),
         })
     }

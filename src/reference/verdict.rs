@@ -246,6 +246,14 @@ pub enum Role {
     Neither,
 }
 
+impl Role {
+    /// It was used to choose an unstated input, whatever its verdict.
+    #[must_use]
+    pub fn is_used_in_fits(self) -> bool {
+        matches!(self, Self::Fitted | Self::CrossValidated)
+    }
+}
+
 /// An entry with one assumption moved.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Moved {

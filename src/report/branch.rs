@@ -45,7 +45,10 @@ pub(super) fn in_short(continuation: &Continuation, table: &Table) -> Option<Str
     let left = stretches.len().saturating_sub(MOST_NAMED);
     stretches.truncate(MOST_NAMED);
     stretches.sort_by(|a, b| a.from.total_cmp(&b.from));
-    let name = |one: &Stretch<'_>| format!("{} from {} to {}", one.motion, compact(one.from, 4), compact(one.to, 4));
+    let name = |one: &Stretch<'_>| match [one.from, one.to].map(|end| compact(end, 4)) {
+        [from, to] if from == to => format!("{} at {from}", one.motion),
+        [from, to] => format!("{} from {from} to {to}", one.motion),
+    };
     let named: Vec<String> = stretches.iter().map(name).collect();
     let shorter = if left == 0 {
         String::new()
@@ -105,7 +108,11 @@ pub(super) fn section(continuation: &Continuation, table: &Table) -> String {
         markdown.row([
             compact(branches[rows.start], 6),
             kinds.join(", "),
-            format!("{} to {}", compact(least, DIGITS), compact(most, DIGITS)),
+            if least == most {
+                compact(least, DIGITS)
+            } else {
+                format!("{} to {}", compact(least, DIGITS), compact(most, DIGITS))
+            },
             format!("{stable} of {count}"),
             points.join("; "),
             reasons.join("; "),

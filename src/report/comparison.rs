@@ -37,7 +37,7 @@ pub(super) fn in_short(judged: &[Judged]) -> String {
     text + "\n"
 }
 
-/// `Stands in part: of 4 statements, 2 agree, 2 differ; 1 more was used to choose an input (fitted) and proves nothing.`
+/// `Stands in part: of 4 statements, 2 agree, 2 differ; of 3 used in fits 1 more agrees (fitted), which proves nothing.`
 fn conclusion(judged: &[Judged]) -> String {
     let tally = Tally::of(judged);
     let (fitted, evidence) = (tally.count(Verdict::Fitted), tally.evidence());
@@ -47,13 +47,16 @@ fn conclusion(judged: &[Judged]) -> String {
     let agreeing = counted(tally.count(Verdict::Reproduced), "agrees", "agree");
     let others = tally.without(Verdict::Fitted).without(Verdict::Reproduced);
     let others = if others.total() == 0 { String::new() } else { format!(", {}", others.describe()) };
-    let fitted = match fitted {
-        0 => String::new(),
-        _ => format!(
-            "; {} used to choose an input (fitted) and {} nothing",
-            counted(fitted, "more was", "more were"),
-            if fitted == 1 { "proves" } else { "prove" }
+    let agree = counted(fitted, "more agrees", "more agree");
+    let fitted = match (tally.used_in_fits(), fitted) {
+        (0, 0) => String::new(),
+        (1, 0) => "; 1 of them was used in a fit".to_owned(),
+        (used, 0) => format!("; {used} of them were used in fits"),
+        (used, all) if used <= all => format!(
+            "; {agree}, but {} used in fits (fitted), which proves nothing",
+            if all == 1 { "was" } else { "were" }
         ),
+        (used, _) => format!("; of {used} used in fits {agree} (fitted), which proves nothing"),
     };
     let statements = counted(evidence, "statement", "statements");
     format!("{}: of {statements}, {agreeing}{others}{fitted}.", outcome(&tally))
@@ -176,10 +179,13 @@ pub(crate) fn rests_on(price: Price) -> String {
     }
 }
 
-/// The numbers with their uncertainties.
+/// The numbers with their uncertainties, each in the unit in which it is published.
 fn numbers(judged: &[Judged]) -> String {
-    let mut table = MarkdownTable::new(&[
-        ("Number", Align::Left),
+    // A column that is empty on most pages would say nothing there.
+    let with_unit = judged.iter().any(|one| one.comparison.is_some() && !one.printed_unit.symbol.is_empty());
+    let mut columns = vec![("Number", Align::Left)];
+    columns.extend(with_unit.then_some(("Unit", Align::Left)));
+    columns.extend([
         ("Study, D", Align::Right),
         ("Here, S", Align::Right),
         ("E = S − D", Align::Right),
@@ -190,27 +196,27 @@ fn numbers(judged: &[Judged]) -> String {
         ("|E|/u_val", Align::Right),
         ("Digits that agree", Align::Right),
     ]);
+    let mut table = MarkdownTable::new(&columns);
     for one in judged {
         let Some(comparison) = &one.comparison else { continue };
         let digits_shown = printed_digits(comparison).clamp(6, MOST_DIGITS);
-        table.row([
-            entry(one),
-            compact(comparison.published, digits_shown),
-            significant(comparison.simulated, digits_shown),
-            signed(comparison.error(), 2),
-            significant(comparison.u_num, 2),
-            significant(comparison.u_input, 2),
-            significant(comparison.u_data, 2),
-            significant(comparison.u_val(), 2),
+        let PrintedUnit { symbol, worth } = &one.printed_unit;
+        let in_unit = |x: f64| x / worth;
+        let cells = [
+            compact(in_unit(comparison.published), digits_shown),
+            significant(in_unit(comparison.simulated), digits_shown),
+            signed(in_unit(comparison.error()), 2),
+            significant(in_unit(comparison.u_num), 2),
+            significant(in_unit(comparison.u_input), 2),
+            significant(in_unit(comparison.u_data), 2),
+            significant(in_unit(comparison.u_val()), 2),
             significant(comparison.deviation(), 2),
             digits(comparison),
-        ]);
+        ];
+        let named = [entry(one)].into_iter().chain(with_unit.then(|| symbol.clone()));
+        table.row(named.chain(cells));
     }
-    let table = table.finish();
-    if table.is_empty() {
-        return table;
-    }
-    format!("In SI units, as in the stored table:\n\n{table}")
+    table.finish()
 }
 
 /// What comes out with each assumption moved: the other readings of the source. Nothing where none was moved.

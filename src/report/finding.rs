@@ -102,14 +102,13 @@ fn distance(name: &str, comparison: &Comparison, unit: &PrintedUnit) -> String {
         Some(width) => format!("{} set by hand is allowed", plus_minus(width, 3, unit)),
         None => "2 u_val are allowed".to_owned(),
     };
+    let symbol = if unit.symbol.is_empty() { String::new() } else { format!(" {}", unit.symbol) };
+    let [u_val, u_num, u_input, u_data] = [comparison.u_val(), comparison.u_num, comparison.u_input, comparison.u_data]
+        .map(|u| significant(u / unit.worth, 2));
     format!(
-        "{name}E = {}, that is {} u_val; {allowed}. u_val = {} (u_num {}, u_input {}, u_D {}), in the table's unit",
-        signed(comparison.error(), 3),
+        "{name}E = {}{symbol}, that is {} u_val; {allowed}. u_val = {u_val}{symbol} (u_num {u_num}, u_input {u_input}, u_D {u_data})",
+        signed(comparison.error() / unit.worth, 3),
         significant(comparison.deviation(), 2),
-        significant(comparison.u_val(), 2),
-        significant(comparison.u_num, 2),
-        significant(comparison.u_input, 2),
-        significant(comparison.u_data, 2)
     )
 }
 

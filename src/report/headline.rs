@@ -38,7 +38,7 @@ fn counts(all: &[&Judged]) -> String {
             sentences.push(format!("**{}**: {}.", counted(tally.total(), one, many), tally.describe()));
         }
     }
-    sentences.extend(cross_validated(all));
+    sentences.extend(used_in_fits(all));
     let held_out: Vec<_> = all.iter().filter(|one| one.role == Role::HeldOut).collect();
     if !held_out.is_empty() {
         let agree = Tally::of(held_out.iter().copied().copied()).agreeing();
@@ -53,17 +53,22 @@ fn counts(all: &[&Judged]) -> String {
     sentences.join(" ") + "\n\n"
 }
 
-/// How much of what was fitted the fit of the others predicts.
-fn cross_validated(all: &[&Judged]) -> Option<String> {
-    let fitted = || all.iter().filter(|one| one.verdict == Verdict::Fitted);
-    let come_out = || fitted().filter(|one| one.role == Role::CrossValidated);
-    let numbers = come_out().filter(|one| one.kind == Kind::Number).count();
-    let count = come_out().count();
-    (count > 0).then(|| {
-        let of = counted(fitted().count(), "fitted entry", "fitted entries");
-        let (numbers, predicted) = (counted(numbers, "number", "numbers"), if count == 1 { "is" } else { "are" });
-        format!("**Left out one at a time**, {count} of {of} ({numbers}) {predicted} still predicted by the others.")
-    })
+/// How many entries were used in fits, how many of these agree, and how many of those the fit of the others predicts.
+fn used_in_fits(all: &[&Judged]) -> Option<String> {
+    let tally = Tally::of(all.iter().copied());
+    let (used, fitted) = (tally.used_in_fits(), tally.count(Verdict::Fitted));
+    let come_out = || all.iter().filter(|one| one.verdict == Verdict::Fitted && one.role == Role::CrossValidated);
+    let numbers = counted(come_out().filter(|one| one.kind == Kind::Number).count(), "number", "numbers");
+    let left_out = match come_out().count() {
+        0 => String::new(),
+        1 => format!("; **left out one at a time**, 1 of them ({numbers}) is still predicted by the others"),
+        count => {
+            format!("; **left out one at a time**, {count} of these ({numbers}) are still predicted by the others")
+        }
+    };
+    let agree = if fitted == 1 { "agrees" } else { "agree" };
+    let of = counted(used, "entry", "entries");
+    (used > 0).then(|| format!("**Used in fits**: {of}, of which {fitted} {agree} (fitted){left_out}."))
 }
 
 /// Experiments all of whose statements agree, those with most evidence first.

@@ -70,7 +70,7 @@ pub use motions::what_moves;
 pub use movement::{Moved, Movement, between_tables, between_verdicts, standing};
 pub use overview::overview_svg;
 pub use page::page;
-pub use pages::{NotDrawn, Published, VERDICTS, publish};
+pub use pages::{Elsewhere, NotDrawn, Published, VERDICTS, publish};
 pub use prose::LastVerdicts;
 pub use publication::publication_reasons;
 pub use pull_request::{PULL_REQUEST_LIMIT, pull_request};

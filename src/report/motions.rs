@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::markdown::{Align, MarkdownTable, details, one_line};
 use super::view::ExperimentView;
 use crate::dynamics::MotionKind;
-use crate::study::{Motions, Settling};
+use crate::study::{Motions, Settling, StartShares};
 use crate::text::number::{self, compact, significant};
 use crate::text::words::counted;
 
@@ -68,9 +68,10 @@ pub fn what_moves(experiments: &[ExperimentView<'_>]) -> String {
     let all: Vec<(&ExperimentView<'_>, &Motions)> =
         experiments.iter().filter_map(|view| Some((view, view.motions.as_ref()?))).collect();
     let best: Vec<_> = all.iter().filter(|(_, motions)| !motions.best.is_empty()).copied().collect();
+    let starts: Vec<_> = all.iter().filter_map(|(view, motions)| Some((*view, motions.starts?))).collect();
     let all: Vec<_> = all.into_iter().filter(|(_, motions)| motions.rows() > 0).collect();
     let total: usize = all.iter().map(|(_, motions)| motions.rows()).sum();
-    if total == 0 && best.is_empty() {
+    if total == 0 && starts.is_empty() {
         return text + "No experiment measures its motion.\n";
     }
     let count = |kind: &str| all.iter().filter_map(|(_, motions)| motions.kinds.get(kind)).sum::<usize>();
@@ -100,7 +101,10 @@ pub fn what_moves(experiments: &[ExperimentView<'_>]) -> String {
             percent(worst),
         );
     }
-    text += &table(&all);
+    if total > 0 {
+        text += &table(&all);
+    }
+    text += &random_starts(&starts);
     text += &best_motions(&best);
     let mut listed: Vec<_> = all
         .iter()
@@ -113,6 +117,32 @@ pub fn what_moves(experiments: &[ExperimentView<'_>]) -> String {
     }
     text + "The kinds of motion are proved by Floquet multipliers and Lyapunov exponents; the settled motion is the one that \
             the run reaches within ten times its cycles, averaged over one period. [The study in one page](README.md)\n"
+}
+
+/// Experiments whose starts were drawn at random, by the motions that attract in each of their cases.
+fn random_starts(all: &[(&ExperimentView<'_>, StartShares)]) -> String {
+    if all.is_empty() {
+        return String::new();
+    }
+    let mut table = MarkdownTable::new(&[
+        ("Experiment", Align::Left),
+        ("Cases", Align::Right),
+        ("Random starts each", Align::Right),
+        ("One motion attracts", Align::Right),
+        ("Several attract", Align::Right),
+        ("No start settled", Align::Right),
+    ]);
+    for (view, starts) in all {
+        table.row(vec![
+            format!("[{}]({})", one_line(&view.experiment.title), view.page),
+            starts.cases().to_string(),
+            starts.each.to_string(),
+            starts.one.to_string(),
+            starts.several.to_string(),
+            starts.unsettled.to_string(),
+        ]);
+    }
+    format!("**How many motions attract?** Each case from random starts, run until they settle.\n\n{}", table.finish())
 }
 
 /// Of each damper whose starts were drawn at random the best motion that attracts.

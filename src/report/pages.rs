@@ -61,13 +61,30 @@ pub struct Published {
     /// Files of the study as a whole.
     pub of_the_study: BTreeSet<String>,
     /// Experiments that cannot be judged here and that those files have verdicts of: they are left as they are.
-    pub elsewhere: usize,
+    pub elsewhere: Elsewhere,
     /// Files that were written.
     pub written: usize,
     /// Figures that were drawn; those that would show the same as before are not.
     pub drawn: usize,
     /// Figures that could not be drawn, in words.
     pub problems: Vec<String>,
+}
+
+/// Experiments that cannot be judged here and have a verdict in the reports, by the reason.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Elsewhere {
+    /// Without a table, as in a study that was just cloned.
+    pub without_table: usize,
+    /// With a reference that cannot be read.
+    pub without_reference: usize,
+}
+
+impl Elsewhere {
+    /// There are none.
+    #[must_use]
+    pub fn is_none(self) -> bool {
+        self == Self::default()
+    }
 }
 
 /// An experiment whose table counts, while it is published.
@@ -101,7 +118,7 @@ pub fn publish(study: &Study, judgement: &Judgement, ids: &BTreeSet<&str>) -> Re
         write_page(study, judgement, page, drawn, &mut published)?;
     }
     published.elsewhere = judged_elsewhere(study);
-    if published.elsewhere == 0 {
+    if published.elsewhere.is_none() {
         for (name, text) in views::of_the_study(study, judgement) {
             published.written += usize::from(atomic::write_if_changed(&study.layout.path(&name), text.as_bytes())?);
             published.of_the_study.insert(name);
@@ -121,18 +138,20 @@ fn is_reference_read(study: &Study, id: &str) -> bool {
 
 /// How many experiments without a table, as in a study that was just cloned, or without a reference that can be read have a verdict in the
 /// reports: the pages of the whole study would lose what is known of them.
-fn judged_elsewhere(study: &Study) -> usize {
+fn judged_elsewhere(study: &Study) -> Elsewhere {
     let tables = study.tables();
     let mut unjudged = study.texts.ids();
     unjudged.retain(|id| !tables.contains_key(id) || !is_reference_read(study, id));
     if unjudged.is_empty() {
-        return 0;
+        return Elsewhere::default();
     }
     let verdicts = fs::read_to_string(study.layout.path(VERDICTS)).unwrap_or_default();
     let verdicts = read_json(&verdicts).unwrap_or_default();
     let judged = verdicts.iter().filter(|one| one.verdict != Verdict::Missing.word());
     let judged: BTreeSet<&str> = judged.filter_map(|one| Some(one.id.split_once('/')?.0)).collect();
-    judged.intersection(&unjudged).count()
+    let (without_reference, without_table): (Vec<&str>, Vec<&str>) =
+        judged.intersection(&unjudged).partition(|id| !is_reference_read(study, id));
+    Elsewhere { without_table: without_table.len(), without_reference: without_reference.len() }
 }
 
 /// Everything that a run would write under `reports/`, by name within the study; or why it cannot be made. Of the experiments in `only`

@@ -30,8 +30,8 @@ digits allow), the number is blocked or undecidable, unless it was fitted and is
 are on the right side of what the claim requires. Where it is small it is shown ± 2 u; u is the error of the grid and of the mean over \
 the ensemble, which is smaller than the spread of single runs. A claim is *too close to call* where ± is larger than the margin.
 
-**Fitted** entries were used to choose an unstated input, so their agreement proves nothing. **Held out** entries were kept aside \
-by a calibration to test it. Only entries that are held out or in no fit are evidence, and those fitted ones that still agree when \
+Entries **used in fits** helped to choose an unstated input. Those of them that agree are *fitted*, which proves nothing; the others \
+differ all the same, or cannot be decided. **Held out** entries were kept aside by a calibration to test it. Only entries that are held out or in no fit are evidence, and those fitted ones that still agree when \
 *left out*, that is, with inputs chosen by the others alone. The page of the calibration gives the share of all sets of inputs that \
 would bring them there, too (“by chance”).
 

@@ -43,11 +43,11 @@ pub(super) fn shown(judged: &Judged) -> String {
     if judged.as_expected() { verdict } else { format!("**{verdict}** (expected: {})", judged.expected.word()) }
 }
 
-/// The role of an entry as a page tells it; empty where it has none.
+/// Whether the entry was used in fits; empty where it was not, and no fit kept it aside.
 pub(super) fn role(judged: &Judged) -> &'static str {
     match judged.role {
-        Role::Fitted => "fitted",
-        Role::CrossValidated => "fitted, comes out when left out",
+        Role::Fitted => "yes",
+        Role::CrossValidated => "yes; still predicted when left out",
         Role::HeldOut => "held out",
         Role::Neither => "",
     }
@@ -57,6 +57,7 @@ pub(super) fn role(judged: &Judged) -> &'static str {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Tally {
     counts: [usize; VERDICTS.len()],
+    used_in_fits: usize,
 }
 
 impl Tally {
@@ -66,6 +67,7 @@ impl Tally {
             for (count, verdict) in tally.counts.iter_mut().zip(VERDICTS) {
                 *count += usize::from(one.verdict == verdict);
             }
+            tally.used_in_fits += usize::from(one.role.is_used_in_fits());
         }
         tally
     }
@@ -82,6 +84,11 @@ impl Tally {
     /// How many agree with the study.
     pub(super) fn agreeing(&self) -> usize {
         self.each().filter(|(verdict, _)| agrees(*verdict)).map(|(_, count)| count).sum()
+    }
+
+    /// How many were used to choose an unstated input, whatever their verdict: *fitted* are those of them that agree.
+    pub(super) fn used_in_fits(&self) -> usize {
+        self.used_in_fits
     }
 
     /// How many do not agree by a fit, which would be no evidence; a fitted entry that differs all the same is some.

@@ -87,7 +87,7 @@ pub use row_failure::{RowFailure, SearchError};
 pub use run::{Finished, RunError, Task, run};
 pub use run_times::RunTimes;
 pub use shard::{NotThePart, Shard, ShardError};
-pub use shares::{Attracting, BestMotion, CaseShares};
+pub use shares::{Attracting, BestMotion, CaseShares, StartShares};
 pub use snapshot::Snapshot;
 pub use spent::{Cost, Spent};
 pub use store::{Held, Lock, LockError, is_begun, keep, remove_journals, save};

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::shares::BestMotion;
+use super::shares::{BestMotion, StartShares};
 use crate::dynamics::{MotionKind, Until};
 use crate::experiment::{Experiment, Parameter, RowSource};
 use crate::measure::{Measure, Settings};
@@ -28,6 +28,8 @@ pub struct Motions {
     pub settled_after: Vec<f64>,
     /// How the averages compare with the settled motion, where that was measured.
     pub settling: Option<Settling>,
+    /// Of random starts: in how many cases they end in one motion, and in how many in several.
+    pub starts: Option<StartShares>,
     /// Of random starts of several dampers: the best motion that each has.
     pub best: Vec<BestMotion>,
 }
@@ -100,7 +102,8 @@ impl Motions {
             // A motion that few starts end in is a row like one that all do.
             let Settings { skip, .. } = experiment.settings;
             let (kinds, best) = (BTreeMap::new(), BestMotion::of(experiment, table));
-            return Some(Self { kinds, skip, settled_after: Vec::new(), settling: None, best });
+            let starts = StartShares::of(experiment, table);
+            return Some(Self { kinds, skip, settled_after: Vec::new(), settling: None, starts, best });
         }
         // Orbits of a branch are no runs, and most of them nobody would see.
         if experiment.is_whole() {
@@ -118,7 +121,7 @@ impl Motions {
         let mut settled_after: Vec<f64> = cells.map_or_else(Vec::new, of_rows);
         settled_after.sort_by(f64::total_cmp);
         let settling = runs_on.then(|| Settling::of(experiment, table, &rows)).flatten();
-        Some(Self { kinds, skip: experiment.settings.skip, settled_after, settling, best: Vec::new() })
+        Some(Self { kinds, skip: experiment.settings.skip, settled_after, settling, starts: None, best: Vec::new() })
     }
 
     /// Rows that come again, but only after the cycles left out.

@@ -36,6 +36,19 @@ pub struct CaseShares {
     pub motions: Vec<Attracting>,
 }
 
+/// The cases of an experiment with random starts, by how many motions its starts settle in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StartShares {
+    /// Starts of each case.
+    pub each: u32,
+    /// Cases in which one motion attracts.
+    pub one: usize,
+    /// Those in which several do.
+    pub several: usize,
+    /// Those in which no start has settled.
+    pub unsettled: usize,
+}
+
 /// The best motion that attracts, for one damper.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BestMotion {
@@ -101,6 +114,27 @@ impl CaseShares {
     /// The motions that its starts have settled in.
     pub fn settled(&self) -> impl Iterator<Item = &Attracting> {
         self.motions.iter().filter(|motion| motion.has_settled())
+    }
+}
+
+impl StartShares {
+    /// `None` where the rows are no motions that random starts end in, or a case has failed.
+    pub(super) fn of(experiment: &Experiment, table: &Table) -> Option<Self> {
+        let RowSource::Basins(starts) = experiment.row_source() else { return None };
+        let cases = CaseShares::read(experiment, table)?;
+        let with = |wanted: fn(usize) -> bool| cases.iter().filter(|case| wanted(case.settled().count())).count();
+        Some(Self {
+            each: starts.count,
+            one: with(|settled| settled == 1),
+            several: with(|settled| settled > 1),
+            unsettled: with(|settled| settled == 0),
+        })
+    }
+
+    /// All cases.
+    #[must_use]
+    pub fn cases(&self) -> usize {
+        self.one + self.several + self.unsettled
     }
 }
 

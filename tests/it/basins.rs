@@ -8,7 +8,7 @@ use shotdamp::measure::Evaluated;
 use shotdamp::study::{Engine, Evaluate, IgnoreEvents, RowFailure, Simulation};
 use shotdamp::table::{Data, Table};
 
-use crate::desk::{Desk, refuses};
+use crate::desk::{Desk, refuses, shotdamp};
 
 /// Balls without mass on a table with the acceleration Γ = 0.8 of gravity. The state of the unstable motion with one impact a cycle,
 /// 9.970 mm and −0.1676 m/s at the start of a cycle, lies on the border between rest and bouncing: within 20 µm the border is straight, and a box that
@@ -185,4 +185,23 @@ fn a_box_that_makes_no_sense_is_refused_where_it_stands() {
     let figures = BALLS.find("figures:").unwrap();
     let plain = format!("{}{}", &BALLS[..begin], &BALLS[end..figures]);
     assert!(!read(&plain).unwrap().simulation_json().to_string().contains("starts"));
+}
+
+#[test]
+fn a_study_of_random_starts_alone_says_how_many_motions_attract() {
+    let desk = desk(&BALLS.replace("count: 300", "count: 20"));
+    assert_eq!(shotdamp(&desk, &["run", "--quiet"]).code, 0);
+    let page = String::from_utf8(desk.bytes("reports/what-moves-how.md")).unwrap();
+    assert!(page.contains("| [Balls on a table](ch3/ch3-basins.md) | 2 | 20 | 1 | 1 | 0 |"), "{page}");
+    assert!(!page.contains("No experiment") && !page.contains("Rows"), "{page}");
+}
+
+#[test]
+fn the_only_motion_that_attracts_is_named_in_the_figures() {
+    let desk = desk(&BALLS.replace("count: 300", "count: 20").replace("[0.565685424949, 0.35]", "[0.35]"));
+    assert_eq!(shotdamp(&desk, &["run", "--quiet"]).code, 0);
+    for figure in ["ch3-basins", "ch3-basins-starts"] {
+        let svg = String::from_utf8(desk.bytes(&format!("reports/ch3/{figure}.svg"))).unwrap();
+        assert!(svg.contains(">at rest</text>"), "{figure}");
+    }
 }

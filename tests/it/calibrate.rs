@@ -378,3 +378,14 @@ fn a_calibration_whose_page_cannot_be_written_is_refused_before_it_begins() {
     assert!(said.code == 2 && said.err.contains("cannot write "), "{}", said.err);
     assert!(!said.err.contains("tried") && !desk.layout.path("results/calibrations").exists(), "{}", said.err);
 }
+
+#[test]
+fn an_input_that_no_fitted_entry_depends_on_keeps_its_value_in_force() {
+    // Plastic is in force, and stands second here.
+    let text = STOP.replace("values: [0, 0.5]", "values: [0.5, 0]");
+    let result = run(&text);
+    assert_eq!((result.places[1], result.profiles[1].is_unread, result.profiles[0].is_unread), (1, true, false));
+    let page = shotdamp::calibrate::calibration(&read(&text), &result);
+    let row = page.lines().find(|line| line.starts_with("| `plastic`")).unwrap();
+    assert!(row.contains("; **0: ") && row.ends_with("| no: no fitted entry depends on it |"), "{row}");
+}

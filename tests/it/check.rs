@@ -325,7 +325,7 @@ fn committed_reports_are_those_that_would_be_generated() {
         description.err,
         "error: reports/ch3/ch3-gap.png: is not there\n\
          error: reports/ch3/ch3-lost.md: nothing writes it; remove it\n\
-         error: reports/ch3/ch3-stop.md:40: differs first in this line\n    \
+         error: reports/ch3/ch3-stop.md:38: differs first in this line\n    \
              committed  Polished.\n    generated  With and without.\n\
          error: reports/ch3/ch3-stop.png: differs from byte 1000 on\n"
     );

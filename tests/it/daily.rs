@@ -414,7 +414,9 @@ fn a_run_of_some_experiments_names_the_pages_that_it_wrote() {
     // Reports are committed, tables are not.
     fs::remove_dir_all(desk.layout.path("results")).unwrap();
     let said = shotdamp(&desk, &["run", "ch3-gap", "ch3-long"]);
-    assert!(said.out.contains("The pages of the whole study stay as they are"), "{}", said.out);
+    let line =
+        "The pages of the whole study are not updated: 1 experiment has no table here; `shotdamp run` makes them.";
+    assert!(said.out.lines().any(|said| said == line), "{}", said.out);
     let named: Vec<&str> = said.out.lines().filter(|line| line.starts_with("Result: ")).collect();
     assert!(named.len() == 2 && named[0].ends_with("ch3-gap.md") && named[1].ends_with("ch3-long.md"), "{named:?}");
 }
@@ -428,9 +430,9 @@ fn one_experiment_run_in_a_fresh_clone_leaves_the_pages_of_the_whole_study() {
     // Reports are committed, tables are not.
     fs::remove_dir_all(desk.layout.path("results")).unwrap();
     let run = shotdamp(&desk, &["run", "ch3-gap"]);
-    assert!(run.out.contains("verdicts of 1 experiment without a table here"), "{}{}", run.out, run.err);
+    assert!(run.out.contains("are not updated: 1 experiment has no table here"), "{}{}", run.out, run.err);
     assert_eq!(read(), committed);
     let whole = shotdamp(&desk, &["run"]);
-    assert!(!whole.out.contains("without a table"), "{}", whole.out);
+    assert!(!whole.out.contains("are not updated"), "{}", whole.out);
     assert_ne!(read(), committed, "the tables were made up before");
 }

@@ -778,3 +778,24 @@ fn numbers_that_are_identical_say_how_far() {
     let found_same = found(&format!("{whole}, {whole}"));
     assert!(found_same.contains("25.69, identical to the last digit"), "{found_same}");
 }
+
+#[test]
+fn a_claim_shows_its_number_and_its_bounds_in_one_unit_and_names_the_unit_of_a_place() {
+    let in_metres = |name: &str, cells: &[f64]| column(name, "m", Data::Float(cells.to_vec()));
+    let amplitude = |value: f64, u: f64| {
+        complete(vec![in_metres("displacement_amplitude", &[value]), in_metres("displacement_amplitude_num", &[u])])
+    };
+    let within = "claim: {between: {value: {cell: {of: displacement_amplitude}}, from: 0.5 mm, to: 2 mm}}\nthreshold_reason: for the test";
+    let found = |table: &Table| judged(within, table).found;
+    assert_eq!(
+        found(&amplitude(1.1e-3, 2.05e-4)),
+        "true: displacement amplitude 1.10 ± 0.41 mm (required: 0.5 mm to 2 mm)"
+    );
+    assert_eq!(found(&amplitude(1.1e-3, 0.0)), "true: displacement amplitude 1.1 mm (required: 0.5 mm to 2 mm)");
+
+    let mut lines =
+        lines(&[("event_driven", [1.0, 1.2, 1.4, 1.6, 1.8]), ("fixed_step_1e-2s", [0.9, 1.0, 1.3, 1.5, 1.7])]);
+    lines.columns[0] = column("angular_frequency", "rad/s", Data::Float([[1.0, 2.0, 3.0, 4.0, 5.0]; 2].concat()));
+    let above = "claim: {line_above: {of: velocity_ratio, over: angular_frequency, by: solver, above: event_driven, below: fixed_step_1e-2s}}";
+    assert_eq!(judged(above, &lines).found, "true: smallest lead 0.1 at ω = 1 rad/s");
+}

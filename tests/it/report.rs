@@ -335,8 +335,37 @@ fn the_headline_separates_numbers_from_claims() {
         page: String::new(),
     };
     let text = index(&about(), &[view], &[], None);
-    let counts = "**2 numbers**: 1 fitted, 1 differs. **2 claims**: 1 reproduced, 1 differs. **Held out** of all fits: 0 of 1 agree.";
+    let counts = "**2 numbers**: 1 fitted, 1 differs. **2 claims**: 1 reproduced, 1 differs. **Used in fits**: 1 entry, of which 1 agrees \
+                  (fitted). **Held out** of all fits: 0 of 1 agree.";
     assert!(text.contains(counts), "{text}");
+}
+
+#[test]
+fn a_page_counts_all_entries_that_were_used_in_fits_and_those_of_them_that_agree() {
+    let used = |verdict: Verdict| Judged { role: Role::Fitted, ..entry("a", verdict) };
+    let plain = entry("b", Verdict::Reproduced);
+    let (fitted, differs, left_out) = (
+        used(Verdict::Fitted),
+        used(Verdict::Differs),
+        Judged { role: Role::CrossValidated, ..entry("c", Verdict::Fitted) },
+    );
+    let lead =
+        |judged: &[Judged]| page_of(None, judged).lines().find(|line| line.contains("In short")).unwrap().to_owned();
+    let both = lead(&[plain.clone(), fitted.clone(), left_out, differs.clone()]);
+    assert!(
+        both.contains(
+            "of 2 statements, 1 agrees, 1 differs; of 3 used in fits 2 more agree (fitted), which proves nothing."
+        ),
+        "{both}"
+    );
+    let agrees = lead(&[plain.clone(), fitted]);
+    assert!(
+        agrees
+            .contains("of 1 statement, 1 agrees; 1 more agrees, but was used in fits (fitted), which proves nothing."),
+        "{agrees}"
+    );
+    let none_agrees = lead(&[plain, differs.clone(), differs]);
+    assert!(none_agrees.contains("of 3 statements, 1 agrees, 2 differ; 2 of them were used in fits."), "{none_agrees}");
 }
 
 #[test]

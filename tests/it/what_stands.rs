@@ -14,11 +14,16 @@ fn the_readme_counts_the_verdicts_of_the_reports() {
     let [reproduced, differ, fitted, undecidable, blocked] =
         ["reproduced", "differs", "fitted", "undecidable", "blocked"]
             .map(|verdict| entries.iter().filter(|entry| entry["verdict"] == verdict).count());
+    let is_used = |entry: &&Value| entry["role"] == "fitted" || entry["role"] == "cross_validated";
+    let used = entries.iter().filter(is_used).count();
     let sentence = format!(
-        "Of {} published numbers and claims {reproduced} are reproduced and {differ} differ; {fitted} were fitted, {undecidable} are undecidable \
-         and {blocked} blocked.",
+        "Of {} published numbers and claims {reproduced} are reproduced, {differ} differ, {undecidable} are undecidable and {blocked} blocked; \
+         of {used} used in fits {fitted} agree (fitted).",
         entries.len()
     );
+    // Fitted are those used in fits that agree, and no other.
+    let fitted = |entry: &&Value| entry["verdict"] == "fitted";
+    assert!(entries.iter().filter(fitted).all(|entry| is_used(&entry)));
     let readme = document("README.md").split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(readme.contains(&sentence), "README.md should say: {sentence}");
 }
