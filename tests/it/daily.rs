@@ -202,6 +202,23 @@ fn what_a_deleted_experiment_left_is_removed() {
     assert_eq!(names(&desk, "reports/ch3"), ["ch3-stop-scene.svg", "ch3-stop.md", "ch3-stop.png", "ch3-stop.svg"]);
 }
 
+#[cfg(unix)]
+#[test]
+fn what_a_link_leads_to_is_nobody_elses_to_remove() {
+    let desk = simulated();
+    assert_eq!(shotdamp(&desk, &[]).code, 0);
+    let elsewhere = tempfile::tempdir().unwrap();
+    fs::write(elsewhere.path().join("notes.md"), "of a person").unwrap();
+    for (to, name) in [(elsewhere.path(), "notes"), (std::path::Path::new("ch3"), "latest"), (".".as_ref(), "self")] {
+        std::os::unix::fs::symlink(to, desk.layout.path(&format!("reports/{name}"))).unwrap();
+    }
+    let before = names(&desk, "reports/ch3");
+    assert_eq!(shotdamp(&desk, &["clean", "--orphans"]).out, "0 files removed\n");
+    assert!(elsewhere.path().join("notes.md").exists());
+    assert_eq!(names(&desk, "reports/ch3"), before);
+    assert_eq!(shotdamp(&desk, &["check", "--reports"]).code, 0);
+}
+
 /// There is no `results/`, so that no record names the files.
 #[test]
 fn what_a_deleted_experiment_left_is_found_in_a_fresh_clone_too() {

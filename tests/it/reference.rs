@@ -205,6 +205,11 @@ fn a_claim_that_chance_may_decide_shows_the_uncertainty_of_its_difference() {
     assert!(verdict == Verdict::Reproduced && text.ends_with("3.378 > 3.165; margin 0.21 ± 0.14"), "{text}");
     let (verdict, text) = found([3.355, 3.355], 0.05);
     assert!(verdict == Verdict::Undecidable && text.ends_with("3.355 ≈ 3.355; margin 0 ± 0.14"), "{text}");
+    // To nine digits, and known so well: neither is greater. One digit less, and it is anyone's guess.
+    let (verdict, text) = found([3.355, 3.355 * (1.0 + 2e-10)], 3e-10);
+    assert!(verdict == Verdict::Differs && text.ends_with("3.355 = 3.355"), "{text}");
+    let (verdict, text) = found([3.355, 3.355 * (1.0 + 2e-9)], 3e-9);
+    assert!(verdict == Verdict::Undecidable && text.contains("3.355 ≈ 3.355"), "{text}");
     // Beyond doubt, the numbers say enough.
     let (verdict, text) = found([3.378, 2.027], 0.05);
     assert!(verdict == Verdict::Reproduced && text.ends_with("3.378 > 2.027"), "{text}");

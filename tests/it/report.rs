@@ -114,7 +114,7 @@ fn assumptions() -> Vec<AssumptionView> {
         AssumptionView {
             name: "gravity".into(),
             value: value_in_words("m/s²", &AssumptionValue::Number(9.81)),
-            has_range: false,
+            has_range: true,
             reason: "The usual rounding.".into(),
             used_by: Vec::new(),
             fitted_to: Vec::new(),

@@ -3,6 +3,7 @@
 use std::fs;
 
 use shotdamp::experiment::{Assumptions, Experiment, Problems, parse_experiment, scaffold};
+use shotdamp::study::forecast;
 
 use crate::desk::{Desk, shotdamp};
 
@@ -48,6 +49,22 @@ fn a_force_near_a_support_is_none_on_it() {
     }
     for at in ["[1e-9, 0.5]", "[0.5, 0.999]"] {
         assert!(parse(&text(PLATE, at, "")).is_ok(), "{at}");
+    }
+}
+
+#[test]
+fn a_damper_on_a_support_is_said_to_do_nothing() {
+    for (structure, at, on_it) in
+        [(CANTILEVER, "0", true), (CANTILEVER, "1e-5", false), (PLATE, "[0.5, 1]", true), (PLATE, "[0.5, 0.5]", false)]
+    {
+        let force = if structure == PLATE { "[0.5, 0.5]" } else { "1" };
+        let damper = format!(
+            "  dampers: [{{at: {at}, mass_ratio: 0.05, particle_share: 0.5, gap: 1 mm, floor: {{rigid: {{restitution: 0.5}}}}}}]"
+        );
+        let experiment = parse(&text(structure, force, &damper)).unwrap_or_else(|problems| panic!("{problems}"));
+        let said = forecast(&experiment, &Assumptions::default()).join("\n");
+        let warning = "damper 1 stands where the structure does not move: it does nothing";
+        assert_eq!(said.contains(warning), on_it, "{structure} {at}: {said}");
     }
 }
 

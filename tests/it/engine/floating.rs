@@ -6,7 +6,7 @@
 use std::time::Duration;
 
 use shotdamp::accuracy::precise::precise;
-use shotdamp::dynamics::{Contact, EventKind, Law, Matrix, Options, StartState, Tick, event_driven};
+use shotdamp::dynamics::{Contact, Drive, EventKind, Law, Matrix, Options, StartState, Tick, event_driven};
 use shotdamp::scene::{Excitation, PulseShape, Scene, Walls};
 
 use super::arrays::{Dice, chain, particle, quiet, spring, unit};
@@ -80,6 +80,48 @@ pub(super) fn chains_that_float_as_a_whole_move_as_they_do_in_many_digits() {
         within(&format!("{seed}, x"), own.final_displacement, exact.final_displacement, 1e-11);
         within(&format!("{seed}, x′"), own.final_velocity, exact.final_velocity, 1e-11);
         within(&format!("{seed}, RMS"), own.window().rms_velocity() / exact.window().rms_velocity(), 1.0, 1e-11);
+    }
+}
+
+/// Σ factor·row rowᵀ.
+fn squares(n: usize, of: &[(f64, &[f64])]) -> Matrix {
+    let entry = |i: usize, j: usize| of.iter().map(|(factor, row)| factor * row[i] * row[j]).sum();
+    Matrix { order: n, entries: (0..n * n).map(|at| entry(at / n, at % n)).collect() }
+}
+
+#[test]
+pub(super) fn several_motions_that_nothing_brings_back_move_as_they_do_in_many_digits() {
+    let uneven = Matrix::diagonal(&[0.3, 0.2, 0.7]);
+    let chains: [(f64, &[f64]); 2] = [(3.0, &[1.0, -1.0, 0.0, 0.0]), (5.0, &[0.0, 0.0, 1.0, -1.0])];
+    for (name, stiffness, damping) in [
+        ("two masses on a dashpot between them", squares(2, &[]), squares(2, &[(0.3, &[1.0, -1.0])])),
+        ("three", squares(3, &[]), squares(3, &[(0.3, &[1.0, -1.0, 0.0]), (0.7, &[0.0, 1.0, -1.0])])),
+        ("two chains on one", squares(4, &chains), squares(4, &[(0.4, &[0.0, 1.0, -1.0, 0.0])])),
+        ("two chains", squares(4, &chains), squares(4, &[])),
+        ("one spring, one dashpot", squares(3, &[(2.0, &[1.0, -1.0, 0.5])]), squares(3, &[(0.4, &[1.0, 1.0, 0.0])])),
+        ("one spring, three dashpots", squares(3, &[(2.0, &[1.0, -1.0, 0.5])]), uneven),
+        // Springs that give energy hold nothing, and are no motion that springs do not feel.
+        ("a motion that grows", squares(2, &[(1.5, &[1.0, -1.0]), (-0.5, &[1.0, 1.0])]), squares(2, &[])),
+        ("one that grows slowly", squares(2, &[(1.005, &[1.0, -1.0]), (-0.005, &[1.0, 1.0])]), squares(2, &[])),
+    ] {
+        let n = stiffness.order;
+        for floor in [None, Some(Law::Rigid { restitution: 0.0 }), Some(spring(200.0, 0.5))] {
+            let mut system = chain(&(0..n).map(|i| 1.0 + 0.3 * i as f64).collect::<Vec<_>>(), 0.0, 0.0);
+            (system.stiffness, system.damping) = (stiffness.clone(), damping.clone());
+            system.particles = floor.iter().map(|&law| particle(0.1, 9.0, unit(n, n - 1), [law, law])).collect();
+            system.gravity = if floor.is_some() { GRAVITY } else { 0.0 };
+            system.drive = Drive { ticks: vec![Tick { time: 0.0, impulse: 0.3, level: 1.0 }], ..quiet(1.3) };
+            let rate = (0..n).map(|i| 0.3 - 0.4 * i as f64).collect();
+            let particles = vec![(Contact::Floor, 0.0, 0.0); system.particles.len()];
+            let start = StartState::Given { q: vec![0.0; n], rate, particles };
+            let options = Options { skip: 0, average: 3, audit: true, start, ..Options::default() };
+            let own = event_driven(&system, &options).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let exact =
+                precise(&system, &options, Duration::from_secs(60)).unwrap_or_else(|error| panic!("{name}: {error}"));
+            assert!(own.proof.energy_residual < 1e-12, "{name}: {:e}", own.proof.energy_residual);
+            within(&format!("{name}, x"), own.final_displacement / exact.final_displacement, 1.0, 1e-12);
+            within(&format!("{name}, RMS"), own.window().rms_velocity() / exact.window().rms_velocity(), 1.0, 1e-12);
+        }
     }
 }
 
