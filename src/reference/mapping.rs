@@ -38,7 +38,6 @@ macro_rules! mapping {
             fn note<'a>(&'a self, seen: &mut $crate::reference::mapping::Seen<'a>) {
                 let mut own = $crate::reference::mapping::Seen::default();
                 $($crate::reference::mapping::Reads::note(&self.$field, &mut own);)+
-                own.has_keys(&[$(stringify!($field)),+]);
                 seen.below.push(own);
             }
         }
@@ -161,18 +160,6 @@ impl<'a> Seen<'a> {
         if let ("cell", Some(part)) = (word, self.below.last_mut()) {
             part.is_one_row = true;
         }
-    }
-
-    /// It has these keys: `along` a column, what reads one row reads one at each level.
-    pub(crate) fn has_keys(&mut self, keys: &[&str]) {
-        if keys.contains(&"along") {
-            self.below.iter_mut().for_each(Self::read_levels);
-        }
-    }
-
-    fn read_levels(&mut self) {
-        self.is_one_row = false;
-        self.below.iter_mut().for_each(Self::read_levels);
     }
 
     /// Reports experiments that there are not, and columns and rows that no table has: the experiment's `own` or another one, as

@@ -229,9 +229,4 @@ fn rows_that_there_will_never_be_are_told_before_anything_runs() {
     for part in ["`cell` reads one row, and ", "add `where: {gap_ratio: …}`"] {
         assert!(several.err.contains(part), "{}", several.err);
     }
-    // One at each level.
-    let trend = "  - {id: more, place: s. 3, says: It., claim: {trend: {of: {cell: {of: velocity_ratio}}, along: gap_ratio, direction: increasing}}}\n";
-    desk.put("reference/ch3/ch3-gap.yaml", &format!("{GAP_REFERENCE}{trend}"));
-    let each = shotdamp(&desk, &["check"]);
-    assert!(!each.err.contains("reads one row"), "{}", each.err);
 }
