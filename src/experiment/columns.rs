@@ -15,7 +15,6 @@ use crate::measure::{
     CycleSpec, CycleValue, EnergySpec, Measure, PROOF, ShapeSpec, TraceSpec, energy_columns, of_another_damper,
     shape_columns, trace_columns, unit_of_list,
 };
-use crate::table::Data;
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,24 +63,6 @@ impl Lists {
             _ => (Vec::new(), Role::History),
         };
         Self { names, role }
-    }
-}
-
-impl Case {
-    /// The cell that a sweep fills in the column of this name; `None` of another column.
-    pub(crate) fn cell(&self, column: &str) -> Option<Data> {
-        if column == "sweep" {
-            return (!self.sweep.is_empty()).then(|| Data::Text(vec![self.sweep.clone()]));
-        }
-        let parameter = from_word(column)?;
-        let word = || Some(Data::Text(vec![word_of(self.get(parameter)?)]));
-        self.number(parameter).map(|x| Data::Float(vec![x])).or_else(word)
-    }
-
-    /// The names of the columns that it fills.
-    pub(crate) fn columns(&self) -> impl Iterator<Item = String> {
-        let sweep = (!self.sweep.is_empty()).then(|| "sweep".to_owned());
-        self.values.iter().map(|(parameter, _)| word_of(*parameter)).chain(sweep)
     }
 }
 

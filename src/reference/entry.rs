@@ -35,8 +35,7 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 
 use super::extraction::Extraction;
-use super::known::KnownTables;
-use super::mapping::{Seen, mapping};
+use super::mapping::{KnownTables, Seen, mapping};
 use super::predicate::Predicate;
 use super::printed::Printed;
 use super::prose::Prose;
@@ -146,8 +145,8 @@ impl ReferenceFile {
     pub(crate) fn check_tables(&self, file: &str, text: &str, tables: &KnownTables<'_>) -> Result<(), Problems> {
         let findings = Findings::default();
         for entry in &self.entries {
-            Seen::of(&entry.rows).check(&self.experiment, &Selection::default(), tables, &findings);
-            entry.seen().check(&self.experiment, &entry.rows, tables, &findings);
+            Seen::of(&entry.rows).check(&self.experiment, tables, &findings);
+            entry.seen().check(&self.experiment, tables, &findings);
         }
         findings.finish(file, text, Some(()))
     }

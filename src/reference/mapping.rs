@@ -1,11 +1,12 @@
 //! Types of a reference file with their readers: a key, its type, how it is read and what an editor says of it, all in one line
 //! of one list.
 
-use super::known::KnownTables;
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::name::{Column, TableName};
 use super::selection::Selection;
 use super::view::Source;
-use crate::experiment::{Findings, did_you_mean};
+use crate::experiment::{Columns, Findings, did_you_mean};
 
 /// A mapping, by what messages call it. `key: Type = required("What it is", read),` is that call of `Keys`, without the key. A
 /// reader may use what keys above it gave; the method after the type's name looks at all of them together.
@@ -114,10 +115,7 @@ macro_rules! forms {
         impl $crate::reference::mapping::Reads for $name {
             fn note<'a>(&'a self, seen: &mut $crate::reference::mapping::Seen<'a>) {
                 match self {
-                    $(Self::$variant(it) => {
-                        $crate::reference::mapping::Reads::note(it, seen);
-                        seen.under($word);
-                    })+
+                    $(Self::$variant(it) => $crate::reference::mapping::Reads::note(it, seen),)+
                 }
             }
         }
@@ -135,14 +133,20 @@ macro_rules! key {
 
 pub(super) use {claim, forms, key, mapping, of_rows, word};
 
+/// What is known of the tables that entries may read.
+pub(crate) struct KnownTables<'a> {
+    /// The experiments that there are.
+    pub(crate) ids: BTreeSet<&'a str>,
+    /// Of those without mistakes, by their names.
+    pub(crate) columns: BTreeMap<String, Columns>,
+}
+
 /// What a part of an entry reads of tables.
 #[derive(Debug, Default)]
 pub(crate) struct Seen<'a> {
     table: Option<&'a TableName>,
     rows: Option<&'a Selection>,
     columns: Vec<&'a Column>,
-    /// One row is meant.
-    is_one_row: bool,
     /// Parts that read for themselves.
     pub below: Vec<Self>,
 }
@@ -155,34 +159,21 @@ impl<'a> Seen<'a> {
         seen
     }
 
-    /// What stands under `cell` reads one row.
-    pub(crate) fn under(&mut self, word: &str) {
-        if let ("cell", Some(part)) = (word, self.below.last_mut()) {
-            part.is_one_row = true;
-        }
-    }
-
-    /// Reports experiments that there are not, and columns and rows that no table has: the experiment's `own` or another one, as
-    /// far as they are known. What is `given` for the whole entry holds in its own table.
-    pub(crate) fn check(&self, own: &str, given: &Selection, tables: &KnownTables<'_>, findings: &Findings) {
+    /// Reports experiments that there are not, and columns that no table has: the experiment's `own` or another one, as far as
+    /// they are known.
+    pub(crate) fn check(&self, own: &str, tables: &KnownTables<'_>, findings: &Findings) {
         let table = self.table.map_or(own, |table| table);
         if let Some(other) = self.table.filter(|table| !tables.ids.contains(&***table)) {
             let near = did_you_mean(table, tables.ids.iter().copied());
             let help = near.unwrap_or_else(|| "`shotdamp list` shows them".into());
             findings.report::<()>(other.span(), format!("`{table}` is not an experiment of this study"), Some(help));
         }
-        if let Some(known) = tables.tables.get(table) {
-            let mut unknown = self.columns.iter().filter(|column| known.columns.role(column).is_none()).peekable();
-            if let (None, Some(rows)) = (unknown.peek(), self.rows) {
-                let rows = if table == own { given.and(rows) } else { rows.clone() };
-                let one_row = self.columns.first().filter(|_| self.is_one_row).map(|column| column.span());
-                known.check_rows(table, &rows, one_row, findings);
-            }
-            for column in unknown {
-                known.columns.unknown::<()>(&format!("the table of `{table}`"), column, column.span(), findings);
+        if let Some(columns) = tables.columns.get(table) {
+            for column in self.columns.iter().filter(|column| columns.role(column).is_none()) {
+                columns.unknown::<()>(&format!("the table of `{table}`"), column, column.span(), findings);
             }
         }
-        self.below.iter().for_each(|part| part.check(own, given, tables, findings));
+        self.below.iter().for_each(|part| part.check(own, tables, findings));
     }
 
     /// Where it reads.

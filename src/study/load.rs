@@ -5,10 +5,9 @@ use std::collections::BTreeMap;
 use super::layout::{ASSUMPTIONS, STUDY, folder_of, stem};
 use super::texts::{Bytes, Texts, Unreadable};
 use crate::experiment::{
-    AboutStudy, AssumptionSheet, Assumptions, Cases, Experiment, ExperimentId, IdError, Problems, parse_assumptions,
-    parse_study, parse_with,
+    AboutStudy, AssumptionSheet, Assumptions, Cases, Columns, Experiment, ExperimentId, IdError, Problems,
+    parse_assumptions, parse_study, parse_with,
 };
-use crate::reference::KnownTable;
 use crate::text::utf8::{NotUtf8, decode};
 
 /// How the file of an experiment ends.
@@ -135,17 +134,17 @@ impl Refused {
 }
 
 impl Loaded {
-    /// The table that an experiment will have, which may be among those that were not asked for; nothing of one that there is not,
-    /// or that has mistakes.
-    pub(super) fn table(&self, texts: &Texts, id: &str) -> Option<KnownTable> {
+    /// The columns that the table of an experiment will have, which may be among those that were not asked for; nothing of one
+    /// that there is not, or that has mistakes.
+    pub(super) fn columns(&self, texts: &Texts, id: &str) -> Option<Columns> {
         if let Some(source) = self.sources.iter().find(|source| source.experiment.id.0 == id) {
-            return Some(KnownTable::of(&source.experiment));
+            return Some(source.experiment.columns());
         }
         let is_it = |file: &str| Texts::is_experiment(file) && stem(file) == id;
         let (file, bytes) = texts.files.iter().find(|(file, _)| is_it(file))?;
         let text = text(file, bytes).ok()?;
         let read = parse_with(&id.parse().ok()?, file, text, &self.sheet.assumptions(), Cases::Tried);
-        read.ok().as_ref().map(KnownTable::of)
+        read.ok().map(|experiment| experiment.columns())
     }
 
     /// Reads all experiments among `texts`.

@@ -312,8 +312,8 @@ fn references(
             }
             let reference = parse_reference(id, file, text)?;
             let read = reference.other_tables().into_iter().chain([id.to_owned()]);
-            let tables = read.filter_map(|id| Some((id.clone(), loaded.table(texts, &id)?))).collect();
-            reference.check_tables(file, text, &KnownTables { ids: texts.ids(), tables })?;
+            let columns = read.filter_map(|id| Some((id.clone(), loaded.columns(texts, &id)?))).collect();
+            reference.check_tables(file, text, &KnownTables { ids: texts.ids(), columns })?;
             Ok(reference)
         });
         match reference {

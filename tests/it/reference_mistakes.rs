@@ -212,21 +212,3 @@ fn a_missing_key_is_told_with_the_words_that_it_takes() {
 }
 
 #[test]
-fn rows_that_there_will_never_be_are_told_before_anything_runs() {
-    let desk = simulated();
-    let with = |from: &str| {
-        let entry = format!("  - {{id: more, place: s. 3, says: It., value: 2, from: {from}}}\n");
-        desk.put("reference/ch3/ch3-gap.yaml", &format!("{GAP_REFERENCE}{entry}"));
-        shotdamp(&desk, &["check"])
-    };
-    let none = with("{maximum: {of: velocity_ratio, over: gap_ratio, where: {gap_ratio: 7.5}}}");
-    assert_eq!(none.code, 2, "{}", none.err);
-    for part in ["has no row with gap_ratio 7.5", "ch3-gap.yaml:", "= `gap_ratio` is "] {
-        assert!(none.err.contains(part), "{}", none.err);
-    }
-    let several = with("{cell: {of: velocity_ratio}}");
-    assert_eq!(several.code, 2, "{}", several.err);
-    for part in ["`cell` reads one row, and ", "add `where: {gap_ratio: …}`"] {
-        assert!(several.err.contains(part), "{}", several.err);
-    }
-}
