@@ -232,7 +232,8 @@ impl FigureReader<'_> {
         let reach = keys.optional("reach", "From one number to a larger one, at least", read_reach);
         let part = "From one number to a larger one: only what lies between them is drawn";
         let range = keys.optional_where(may_be_a_part, "range", part, read_reach);
-        let (unit_at, range_at) = (keys.span_of("unit"), keys.span_of("range"));
+        let unit_at = keys.span_of("unit");
+        let range_at = may_be_a_part.then(|| keys.span_of("range")).flatten();
         keys.close()?;
         let (column, span) = column?;
         let role = self.column(&column, span, |role| role != Role::Label)?;

@@ -149,6 +149,7 @@ fn greatest_first(list: &[Extraction], view: &View<'_>) -> Result<Decision, Abse
         // Too close for any number of digits.
         if let Some(before) = i.checked_sub(1)
             && shown[before] == *text
+            && values[before].value != values[i].value
             && !are_equal(&values[before], &values[i])
         {
             let less = values[before].value - values[i].value;

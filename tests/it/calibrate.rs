@@ -108,7 +108,12 @@ fn the_best_of_all_combinations_is_found_and_each_input_has_its_profile() {
     assert_eq!(result.held_out[0].best.found, Found::Claim { holds: true });
     assert_eq!(result.held_out[0].best.verdict, Verdict::Reproduced);
     let page = shotdamp::calibrate::calibration(&read(STOP), &result);
-    assert!(page.contains("**55 mm: 0.2") && page.contains("| yes |") && page.contains("| no |"), "{page}");
+    assert!(
+        page.contains("**55 mm: 0.2")
+            && page.contains("| yes |")
+            && page.contains("| no: no fitted entry depends on it |"),
+        "{page}"
+    );
     assert!(page.contains("All 6 combinations of values were tried, each as a single run."), "{page}");
     assert_eq!(on(&Desk::new(), &read(STOP), 1).unwrap().0, result, "on any number of threads");
 }

@@ -167,20 +167,3 @@ fn searches_that_differ_in_their_seed_are_one_line_with_a_band() {
     assert!(picture.svg.contains("median and range of 3 seeds"));
     assert_eq!(picture.svg.matches(">genetic algorithm<").count(), 1, "not a line a seed");
 }
-
-/// Beside a line near the edge of the frame there is room for the number, and below it for what it belongs to.
-#[test]
-fn a_label_without_room_in_one_line_takes_two() {
-    let over_force = || panel("force_ratio", AxisScale::Log, &["velocity_ratio"]);
-    let two = |x: f64| Quoted {
-        tolerance: None,
-        label: format!("study: {x}, with the heavier damping"),
-        ..quoted(QuotedAt::Place(x))
-    };
-    let text = |quoted: &[Quoted], words: &str| {
-        drawn("study-two-lines", over_force(), &curve(), quoted, None).svg.contains(&format!(">{words}</text>"))
-    };
-    assert!(text(&[two(3.0)], "study: 3, with the heavier damping"), "one line where there is room");
-    let pair = [two(12.0), two(14.0)];
-    assert!(text(&pair, "study: 14,") && text(&pair, "with the heavier damping"));
-}

@@ -474,9 +474,9 @@ fn what_a_claim_found_says_what_its_numbers_are() {
         assert!(judged(&claim, &table).found.starts_with(found), "{claim}: {}", judged(&claim, &table).found);
     }
     // Two numbers that no sensible number of digits tells apart are shown with what lies between them.
-    let close = lines(&[("event_driven", [1.0, 1.0, 1.0 + 4e-13, 1.0, 1.0])]);
+    let close = lines(&[("event_driven", [1.0, 1.0, 1.0 + 4e-8, 1.0, 1.0])]);
     let claim = format!("claim: {{greatest_first: [{{maximum: {{{line}}}}}, {{end: {{{line}, end: high}}}}]}}");
-    assert!(judged(&claim, &close).found.contains("velocity ratio 1 − 4e-13"), "{}", judged(&claim, &close).found);
+    assert!(judged(&claim, &close).found.contains("velocity ratio 1 − 4e-8"), "{}", judged(&claim, &close).found);
     // A figure in the name of a column is no number of the claim: explanations count the numbers that they cite.
     let gaps = complete(vec![float("gap_1", &[0.002]), float("gap_3", &[0.005])]);
     let found = judged("claim: {greatest_first: [{cell: {of: gap_1}}, {cell: {of: gap_3}}]}", &gaps).found;
@@ -788,7 +788,9 @@ fn numbers_that_are_identical_say_how_far() {
 fn a_claim_shows_its_number_and_its_bounds_in_one_unit_and_names_the_unit_of_a_place() {
     let in_metres = |name: &str, cells: &[f64]| column(name, "m", Data::Float(cells.to_vec()));
     let amplitude = |value: f64, u: f64| {
-        complete(vec![in_metres("displacement_amplitude", &[value]), in_metres("displacement_amplitude_num", &[u])])
+        let [value, u, spread] = [("", value), ("_num", u), ("_spread", 0.0)]
+            .map(|(part, cell)| in_metres(&format!("displacement_amplitude{part}"), &[cell]));
+        complete(vec![value, u, spread])
     };
     let within = "claim: {between: {value: {cell: {of: displacement_amplitude}}, from: 0.5 mm, to: 2 mm}}\nthreshold_reason: for the test";
     let found = |table: &Table| judged(within, table).found;

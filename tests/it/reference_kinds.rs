@@ -433,7 +433,8 @@ fn one_line_lies_above_another_at_every_point_or_it_does_not() {
     assert_eq!(verdict(claim, &fillings(0.1, 0.2)), Verdict::Undecidable);
     assert_eq!(verdict(claim, &fillings(0.0, 1e-6)), Verdict::Undecidable);
     assert_eq!(cannot_fail(claim, &fillings(0.1, 1e-6)), [""; 0]);
-    assert!(judged(claim, &fillings(0.1, 1e-6)).found.contains("smallest lead 0.1 at ω = 40"));
+    let found = judged(claim, &fillings(0.1, 1e-6)).found;
+    assert!(found.contains("smallest lead 0.1 at ω = 40 rad/s"), "{found}");
     // Behind at one point of three, it is still ahead at most of them.
     let most = claim.replace("below: uniform", "below: uniform, points: most");
     assert_eq!(verdict(&most, &fillings(-0.1, 1e-6)), Verdict::Reproduced);

@@ -210,5 +210,3 @@ fn a_missing_key_is_told_with_the_words_that_it_takes() {
     let difference = of("value: 2, from: {difference: [a, b]}");
     assert!(difference[0].ends_with("not as a list | write {of: …, less: …}"), "{difference:?}");
 }
-
-#[test]

@@ -287,7 +287,7 @@ pub(crate) fn mistakes_that_a_person_makes_are_told_where_they_stand() {
         (with("mass_ratio: 0.05", "mass_ratio: -0.05"), "7:19 this ratio cannot be negative"),
         (
             with("gap: 490.5 mm", "gap: -1 mm"),
-            "7:7 a gap clearance cannot be -0.001 m (at force_ratio = 0.1, stop = with)",
+            "8:12 a gap clearance cannot be -0.001 m (at force_ratio = 0.1, stop = with)",
         ),
         (
             with("damping_ratio: assumed", "damping_ratio: 5 mm"),
@@ -665,7 +665,7 @@ zeta: {quantity: ratio, readings: [equivalent_viscous], value: 0.1, reason: none
     let said = one(&needed);
     assert!(
         said.contains(" equivalent viscous damping needs `damping_curve`")
-            && said.starts_with("7:")
+            && said.starts_with("9:")
             && said.contains(
                 "declare an assumption for it under `defaults: damping_curve` in experiments/assumptions.yaml"
             ),
