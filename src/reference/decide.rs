@@ -145,7 +145,10 @@ fn greatest_first(list: &[Extraction], view: &View<'_>) -> Result<Decision, Abse
         {
             found += &format!("{what} ");
         }
-        found += text;
+        found += match i.checked_sub(1) {
+            Some(before) if are_equal(&values[before], &values[i]) => &shown[before],
+            _ => text,
+        };
         // Too close for any number of digits.
         if let Some(before) = i.checked_sub(1)
             && shown[before] == *text

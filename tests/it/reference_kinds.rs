@@ -422,9 +422,9 @@ fn one_line_lies_above_another_at_every_point_or_it_does_not() {
         let frequency = [20.0, 20.0, 30.0, 30.0, 40.0, 40.0].to_vec();
         let ratio = [1.0, 1.2, 2.0, 2.4, 1.5, 1.5 + lead].to_vec();
         let table = Table::default()
-            .with(numbers("angular_frequency", "rad/s", "ω", frequency))
+            .with(numbers("angular_frequency", "ω", "rad/s", frequency))
             .with(texts("filling", ["uniform", "optimised"].repeat(3)))
-            .with(numbers("velocity_ratio", "", "ψ", ratio));
+            .with(numbers("velocity_ratio", "ψ", "", ratio));
         complete(table, &["velocity_ratio"], run)
     };
     let claim = "claim: {line_above: {of: velocity_ratio, over: angular_frequency, by: filling, above: optimised, below: uniform}}";

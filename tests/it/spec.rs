@@ -340,7 +340,7 @@ pub(crate) fn mistakes_that_a_person_makes_are_told_where_they_stand() {
         ),
         (
             with("impulse_train: {", "pulse_train: {shape: rectangular, duration: 1 s, "),
-            "13:3 a pulse of 1 s does not fit into a forcing period of 0.19869176531592203 s (at force_ratio = 0.1, stop = with)",
+            "11:60 a pulse of 1 s does not fit into a forcing period of 0.19869176531592203 s (at force_ratio = 0.1, stop = with)",
         ),
         (with("from: 0.1, to", "from: 0, to"), "13:29 a logarithmic range starts above zero"),
         (
@@ -693,7 +693,7 @@ zeta: {quantity: ratio, readings: [equivalent_viscous], value: 0.1, reason: none
     let by_half_cycles = ContactDamping::EquivalentViscous(vec![[0.5, 1.0], [5.0, 2.0]]);
     assert_eq!(damping(with_curve, "equivalent_viscous").unwrap(), by_half_cycles);
     let said = describe(&damping("", "equivalent_viscous").expect_err("no curve")).remove(0);
-    assert!(said.starts_with("7:") && said.contains("equivalent viscous damping needs `damping_curve`"), "{said}");
+    assert!(said.starts_with("9:") && said.contains("equivalent viscous damping needs `damping_curve`"), "{said}");
     let sheet = parse_assumptions("assumptions.yaml", &words).unwrap_or_else(|problems| panic!("{problems}"));
     let other = assumed.replace("assumed: dashpot", "assumed: half");
     let wrong = parse_experiment(&"a".parse().unwrap(), "a.yaml", &other, &sheet.assumptions()).expect_err("a mistake");
