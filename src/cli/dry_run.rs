@@ -3,11 +3,11 @@
 use super::args::{Args, RunArgs};
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{print, print_error, print_unread, simulations};
+use super::output::{print, print_error, print_unread};
 use super::select::{Found, choose};
 use super::thresholds;
 use super::update::todo;
-use crate::study::{Extent, KnownRows, Layout, forecast};
+use crate::study::{Extent, KnownRows, Layout, forecast, simulations};
 use crate::text::number::{self, compact};
 use crate::text::words::{capitalised, counted};
 

@@ -7,7 +7,6 @@ use super::args::Colour;
 use super::error::CliError;
 use crate::experiment::Problems;
 use crate::study::Refused;
-use crate::text::words::counted;
 
 /// How this process prints; set once, from its arguments.
 #[derive(Debug, Clone, Copy)]
@@ -117,9 +116,4 @@ pub(super) fn columns(rows: &[Vec<String>]) -> String {
         text.push('\n');
     }
     text
-}
-
-/// `1 simulation`, `12 simulations`.
-pub(super) fn simulations(count: u64) -> String {
-    counted(usize::try_from(count).unwrap_or(usize::MAX), "simulation", "simulations")
 }

@@ -12,7 +12,7 @@ use cpu_time::ProcessTime;
 use super::args::Choice;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{columns, print, print_error, print_unread, simulations};
+use super::output::{columns, print, print_error, print_unread};
 use super::select::{choose, matches, no_match};
 use super::thresholds;
 use crate::accuracy::{idle_cases, out_of_reach_in_words, unreached_cases};
@@ -23,7 +23,7 @@ use crate::experiment::{
 use crate::measure::{Settings, rounded};
 use crate::report::{LastVerdicts, VERDICTS, scenes};
 use crate::scene::{Scene, effects};
-use crate::study::{Item, Layout, State, Study, Texts, Untried, forecast};
+use crate::study::{Item, Layout, State, Study, Texts, Untried, forecast, simulations};
 use crate::text::number::quantity;
 use crate::text::words::{counted, of_key};
 

@@ -214,12 +214,12 @@ impl Quoted {
         let others = || panel.quoted.iter().enumerate().filter(|(other, _)| *other != number);
         // There it would read as the label of another line.
         let strays = |place: &Rect| others().any(|(other, one)| one.claims(place, other, panel, frame));
+        let other_lines: Vec<Rect> = others().filter_map(|(_, one)| one.line(panel, frame)).map(spanned).collect();
         let crosses = |place: &Rect| {
             let (from, to) = self.lead_to(at, place);
-            let other_lines = others().filter_map(|(_, one)| one.line(panel, frame));
             // What surrounds its own place is not on its way.
             let boxes = taken.boxes.iter().filter(|taken| !taken.meets(from, from));
-            other_lines.map(spanned).chain(boxes.copied()).any(|other| other.meets(from, to))
+            other_lines.iter().chain(boxes).any(|other| other.meets(from, to))
         };
         let of_form = |form: usize, room: f64| {
             let room = frame.grown(-room);

@@ -4,7 +4,6 @@
 //! itself. So the parabola goes through 1/y², on points at any distances; what the next wider points say instead is how
 //! well the grid knows the result. Where the response is not positive, the parabola goes through the response.
 
-use crate::optimise::{Parabola, Point};
 use serde::{Deserialize, Serialize};
 
 use super::extract::Extracted;
@@ -16,6 +15,7 @@ use super::text::{symbol, with_unit};
 use super::view::{Absence, Line, View};
 use crate::experiment::At;
 use crate::measure::column_words;
+use crate::optimise::{Parabola, Point};
 
 word! {
     "a peak" Peak {
@@ -150,15 +150,8 @@ impl Peak {
     }
 }
 
-/// The vertex of a peak.
-#[derive(Debug, Clone, Copy)]
-struct Top {
-    x: f64,
-    y: f64,
-}
-
 /// The vertex of the parabola through three points of which the middle one is the highest.
-fn vertex(points: [Point; 3]) -> Top {
+fn vertex(points: [Point; 3]) -> Point {
     let reciprocal = points.iter().all(|point| point.y > 0.0);
     let height = |point: Point| if reciprocal { -1.0 / (point.y * point.y) } else { point.y };
     let [left, middle, right] = points;
@@ -170,12 +163,12 @@ fn vertex(points: [Point; 3]) -> Top {
     });
     let Point { x, y: top } = vertex.unwrap_or(heights[1]);
     let y = if reciprocal && top < 0.0 { 1.0 / (-top).sqrt() } else { middle.y.max(top) };
-    Top { x, y }
+    Point { x, y }
 }
 
 /// A number of the peak at a grid point, and its uncertainty: what the errors of the three points do to it, and how far it
 /// is from what the next wider points say.
-fn with_errors(line: &Line, at: usize, read: impl Fn(Top) -> f64) -> (f64, f64) {
+fn with_errors(line: &Line, at: usize, read: impl Fn(Point) -> f64) -> (f64, f64) {
     let point = |i: usize| Point { x: line.x[i], y: line.y[i].value };
     let points = [point(at - 1), point(at), point(at + 1)];
     let value = read(vertex(points));

@@ -1,8 +1,9 @@
 //! What the study says beside what came out.
 
+use std::cmp::Reverse;
+
 use crate::reference::{Comparison, Judged, MotionBehind, Moved, Price, PrintedUnit, Role, Verdict};
 use crate::text::number::{compact, signed, significant};
-use std::cmp::Reverse;
 
 use super::markdown::{Align, MarkdownTable, first_sentence, one_line};
 use super::motions::by_count;

@@ -43,8 +43,8 @@ pub fn forecast(experiment: &Experiment, assumptions: &Assumptions) -> Vec<Strin
 /// Those that a run begins with: what may never end, averages that begin too early, and dampers that do nothing.
 #[must_use]
 pub fn before_run(experiment: &Experiment, assumptions: &Assumptions) -> Vec<String> {
-    let told = |(cause, _): &(Cause, String)| matches!(cause, Cause::Bounces | Cause::Transient | Cause::Still);
-    of_scenes(experiment, assumptions).into_iter().filter(told).map(|(_, warning)| warning).collect()
+    let is_reported = |(cause, _): &(Cause, String)| matches!(cause, Cause::Bounces | Cause::Transient | Cause::Still);
+    of_scenes(experiment, assumptions).into_iter().filter(is_reported).map(|(_, warning)| warning).collect()
 }
 
 /// Warnings of the scenes of an experiment, each once, with the first case that it is about; that of a transient with the case in which

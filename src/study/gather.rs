@@ -11,12 +11,13 @@ use super::run::Finished;
 use super::shard::{NotThePart, ROW, Shard, divisible, owner, owners};
 use crate::experiment::ExperimentId;
 use crate::table::{Column, Data, Table, parquet};
+use crate::text::words::counted;
 
 /// Why the tables of the shards do not make a whole.
 #[derive(Debug, thiserror::Error)]
 pub enum GatherError {
     /// Rows that no shard has.
-    #[error("{id}: {} missing; first do {}", if *.rows == 1 { "1 row is".to_owned() } else { format!("{} rows are", .rows) }, commands(.shards))]
+    #[error("{id}: {} missing; first do {}", counted(*.rows, "row is", "rows are"), commands(.shards))]
     Missing {
         /// Of which experiment.
         id: ExperimentId,

@@ -150,7 +150,7 @@ fn on_disk(layout: &Layout, item: &Item) -> Option<Table> {
 fn is_of(item: &Item, table: &Table) -> bool {
     table.metadata.get("fingerprint") == Some(&item.fingerprint())
         && table.texts("failure").is_some()
-        && (0..table.rows()).all(|row| !table.has_failed(row))
+        && !table.has_failures()
 }
 
 fn fingerprints(item: &Item) -> BTreeSet<RowFingerprint> {

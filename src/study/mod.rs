@@ -81,6 +81,7 @@ pub use open::Study;
 pub use orphan::{earlier_tables, orphans};
 pub use plan::{Item, State};
 pub use progress::Progress;
+pub(crate) use progress::simulations;
 pub use reason::{Reason, differences};
 pub use record::{Failures, FileHash, NoRecord, PRESENTATION_VERSION, Publication, RECORD_FORMAT, Record};
 pub use row_failure::{RowFailure, SearchError};

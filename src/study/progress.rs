@@ -103,6 +103,11 @@ fn left_in_words(left: Left) -> String {
     }
 }
 
+/// `1 simulation`, `12 simulations`.
+pub(crate) fn simulations(count: u64) -> String {
+    counted(usize::try_from(count).unwrap_or(usize::MAX), "simulation", "simulations")
+}
+
 impl Ahead {
     /// The line about an event, if there is something to say: `ch3-gap: 3 rows in 1.2 s; 4 experiments left`.
     pub fn line(&mut self, event: &Event<'_>) -> Option<String> {
@@ -122,13 +127,12 @@ impl Ahead {
                     Some(seconds) => format!("{} of processor time", quantity(*seconds, "s", 2)),
                     None => "restored from earlier tables".into(),
                 };
-                let most = usize::try_from(self.simulations).unwrap_or(usize::MAX);
                 let left = match self.experiments {
                     0 => "none left".into(),
                     many => format!(
                         "{} left, {} at most",
                         counted(many, "experiment", "experiments"),
-                        counted(most, "simulation", "simulations")
+                        simulations(self.simulations)
                     ),
                 };
                 let rows = counted(*rows, "row", "rows");

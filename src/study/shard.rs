@@ -128,8 +128,7 @@ impl Shard {
     #[must_use]
     pub fn has_done(self, layout: &Layout, item: &Item) -> bool {
         let path = layout.path(&self.table_name(&item.source.experiment.id));
-        parquet::read(&path)
-            .is_ok_and(|table| self.check(&table, item).is_ok() && (0..table.rows()).all(|row| !table.has_failed(row)))
+        parquet::read(&path).is_ok_and(|table| self.check(&table, item).is_ok() && !table.has_failures())
     }
 
     /// Writes its table of an experiment.

@@ -143,6 +143,12 @@ impl Table {
         self.texts("failure").and_then(|reasons| reasons.get(row)).is_some_and(|reason| !reason.is_empty())
     }
 
+    /// True if the run of any row has failed.
+    #[must_use]
+    pub fn has_failures(&self) -> bool {
+        self.texts("failure").is_some_and(|reasons| reasons.iter().any(|reason| !reason.is_empty()))
+    }
+
     /// The time histories of a list column, one per row.
     #[must_use]
     pub fn lists(&self, name: &str) -> Option<&[Vec<f64>]> {

@@ -6,7 +6,9 @@
 use std::time::Duration;
 
 use shotdamp::accuracy::precise::precise;
-use shotdamp::dynamics::{Contact, Drive, EventKind, Law, Matrix, Options, StartState, Tick, event_driven};
+use shotdamp::dynamics::{
+    Contact, Drive, EventKind, HybridSystem, Law, Matrix, Options, Response, StartState, Tick, event_driven,
+};
 use shotdamp::scene::{Excitation, PulseShape, Scene, Walls};
 
 use super::arrays::{Dice, chain, particle, quiet, spring, unit};
@@ -40,6 +42,23 @@ pub(super) fn under_a_constant_force_it_creeps_at_its_terminal_velocity() {
     close("displacement", response.final_displacement, terminal * (20.0 - mass / damping), 1e-13);
 }
 
+/// Gives the last coordinate a particle, and the gravity that holds it, if there is a floor for it.
+fn carry(system: &mut HybridSystem, floor: Option<Law>, gap: f64) {
+    let n = system.mass.order;
+    system.particles = floor.iter().map(|&law| particle(0.1, gap, unit(n, n - 1), [law, law])).collect();
+    system.gravity = if floor.is_some() { GRAVITY } else { 0.0 };
+}
+
+/// So many cycles of a structure that starts at zero with these rates, its particle on the floor: by events, and in many digits.
+fn in_both_accuracies(what: &str, system: &HybridSystem, rate: Vec<f64>, cycles: u32) -> [Response; 2] {
+    let particles = vec![(Contact::Floor, 0.0, 0.0); system.particles.len()];
+    let start = StartState::Given { q: vec![0.0; rate.len()], rate, particles };
+    let options = Options { skip: 0, average: cycles, audit: true, start, ..Options::default() };
+    let own = event_driven(system, &options).unwrap_or_else(|error| panic!("{what}: {error}"));
+    let exact = precise(system, &options, Duration::from_secs(60)).unwrap_or_else(|error| panic!("{what}: {error}"));
+    [own, exact]
+}
+
 #[test]
 pub(super) fn chains_that_float_as_a_whole_move_as_they_do_in_many_digits() {
     // Springs between neighbours alone: the motion of all together is along no coordinate. It is damped not at all, by dashpots beside
@@ -64,18 +83,12 @@ pub(super) fn chains_that_float_as_a_whole_move_as_they_do_in_many_digits() {
             system.damping.entries[i * n + i] += own[kind as usize];
         }
         let floor = [None, Some(Law::Rigid { restitution: 0.0 }), Some(spring(200.0, 0.5))][(seed / 15 % 3) as usize];
-        system.particles = floor.iter().map(|&law| particle(0.1, 0.5, unit(n, n - 1), [law, law])).collect();
-        system.gravity = if floor.is_some() { GRAVITY } else { 0.0 };
+        carry(&mut system, floor, 0.5);
         system.drive = quiet(1.3);
         system.drive.ticks =
             vec![Tick { time: 0.0, impulse: 0.3, level: 1.0 }, Tick { time: 0.6, impulse: 0.0, level: -0.5 }];
         let rate = (0..n).map(|_| dice.between(-1.0, 1.0)).collect();
-        let particles = vec![(Contact::Floor, 0.0, 0.0); system.particles.len()];
-        let start = StartState::Given { q: vec![0.0; n], rate, particles };
-        let options = Options { skip: 0, average: 2, audit: true, start, ..Options::default() };
-        let own = event_driven(&system, &options).unwrap_or_else(|error| panic!("{seed}: {error}"));
-        let exact =
-            precise(&system, &options, Duration::from_secs(60)).unwrap_or_else(|error| panic!("{seed}: {error}"));
+        let [own, exact] = in_both_accuracies(&format!("{seed}"), &system, rate, 2);
         assert!(own.proof.energy_residual < 1e-11, "{seed}: {:e}", own.proof.energy_residual);
         within(&format!("{seed}, x"), own.final_displacement, exact.final_displacement, 1e-11);
         within(&format!("{seed}, x′"), own.final_velocity, exact.final_velocity, 1e-11);
@@ -108,16 +121,10 @@ pub(super) fn several_motions_that_nothing_brings_back_move_as_they_do_in_many_d
         for floor in [None, Some(Law::Rigid { restitution: 0.0 }), Some(spring(200.0, 0.5))] {
             let mut system = chain(&(0..n).map(|i| 1.0 + 0.3 * i as f64).collect::<Vec<_>>(), 0.0, 0.0);
             (system.stiffness, system.damping) = (stiffness.clone(), damping.clone());
-            system.particles = floor.iter().map(|&law| particle(0.1, 9.0, unit(n, n - 1), [law, law])).collect();
-            system.gravity = if floor.is_some() { GRAVITY } else { 0.0 };
+            carry(&mut system, floor, 9.0);
             system.drive = Drive { ticks: vec![Tick { time: 0.0, impulse: 0.3, level: 1.0 }], ..quiet(1.3) };
             let rate = (0..n).map(|i| 0.3 - 0.4 * i as f64).collect();
-            let particles = vec![(Contact::Floor, 0.0, 0.0); system.particles.len()];
-            let start = StartState::Given { q: vec![0.0; n], rate, particles };
-            let options = Options { skip: 0, average: 3, audit: true, start, ..Options::default() };
-            let own = event_driven(&system, &options).unwrap_or_else(|error| panic!("{name}: {error}"));
-            let exact =
-                precise(&system, &options, Duration::from_secs(60)).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let [own, exact] = in_both_accuracies(name, &system, rate, 3);
             assert!(own.proof.energy_residual < 1e-12, "{name}: {:e}", own.proof.energy_residual);
             within(&format!("{name}, x"), own.final_displacement / exact.final_displacement, 1.0, 1e-12);
             within(&format!("{name}, RMS"), own.window().rms_velocity() / exact.window().rms_velocity(), 1.0, 1e-12);
