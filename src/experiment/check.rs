@@ -550,8 +550,7 @@ fn remembers(scene: &Scene, case: &Case, experiment: &Experiment) -> Result<(), 
 /// The corners of a box of random starts are starts.
 fn boxed(scene: &Scene, experiment: &Experiment) -> Result<(), Refusal> {
     let Some(starts) = &experiment.starts else { return Ok(()) };
-    let refuse =
-        |message: String| Refusal { message, place: Meant::Part(Part::Start, Vec::new()), ..Refusal::default() };
+    let refuse = |message: String| Refusal { message, place: Meant::whole(Part::Start), ..Refusal::default() };
     if starts.endless(scene).is_some() {
         return Err(refuse("a share of the gap clearance needs a ceiling, and this gap is infinite".into()));
     }

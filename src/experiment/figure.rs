@@ -16,6 +16,7 @@ use super::sweep::{NAME, is_name};
 use super::word::{from_word, word_of};
 use super::yaml::Value;
 use crate::measure::Measure;
+use crate::text::number::compact;
 
 /// What stands after the id in the name of the drawing of what is simulated; no figure has it.
 pub(crate) const SCENE_DRAWING: &str = "scene";
@@ -208,7 +209,8 @@ impl FigureReader<'_> {
     /// The ends of what a sweep gives a column.
     fn reach_of(&self, column: &str) -> Option<[f64; 2]> {
         let parameter = from_word(column)?;
-        let numbers = || self.cases.iter().filter_map(|case| case.number(parameter));
+        let numbers =
+            || self.cases.iter().filter_map(|case| case.number(parameter)).filter(|number| number.is_finite());
         let [low, high] = [numbers().reduce(f64::min)?, numbers().reduce(f64::max)?];
         Some([low, high])
     }
@@ -254,7 +256,10 @@ impl FigureReader<'_> {
             && (from > high || to < low)
         {
             let column = &axis.column;
-            let help = format!("`{column}` goes from {} to {} here", low / worth, high / worth);
+            let unit =
+                axis.unit.as_ref().map_or_else(|| Columns::unit(column).unwrap_or_default(), |unit| &unit.symbol);
+            let [low, high] = [low, high].map(|end| compact(end / worth, 6));
+            let help = format!("`{column}` goes from {low} to {} here", format!("{high} {unit}").trim_end());
             return at.report_at(range_at, format!("nothing of `{column}` lies in this range"), Some(help));
         }
         Some((axis, role))

@@ -1,7 +1,7 @@
 //! Where in a file a part of its meaning is written.
 
 use super::assumption_sheet::assumption_of;
-use super::diagnostic::{Findings, Span};
+use super::diagnostic::Findings;
 use super::recipe::Part;
 use super::yaml::{Node, Value, read_tree};
 
@@ -30,27 +30,22 @@ pub fn line_of(text: &str, path: &[String]) -> Option<usize> {
     Some(text.get(..place?)?.matches('\n').count() + 1)
 }
 
-/// Where a part of the scene is written, or all of it: the value under the first of `keys` that is there, or else the part.
-pub(super) fn place_in(scene: &Node, part: Option<Part>, keys: &[&str]) -> Option<Span> {
-    let Value::Mapping(entries) = &scene.value else { return None };
-    let below = |key: &str| entries.iter().find(|entry| entry.key == key).map(|entry| &entry.node);
-    let part = match part {
-        None => scene,
-        Some(Part::Structure) => below("structure")?,
-        Some(Part::Excitation) => below("excitation")?,
-        Some(Part::Observe) => below("observe")?,
-        Some(Part::Start) => below("start")?,
-        Some(Part::Damper(index)) => match &below("dampers")?.value {
-            Value::Sequence(dampers) => dampers.get(index)?,
-            _ => return None,
+/// What is written of a part of the scene.
+pub(super) fn part_of(scene: &Node, part: Part) -> Option<&Node> {
+    match part {
+        Part::Structure => exactly(scene, "structure"),
+        Part::Excitation => exactly(scene, "excitation"),
+        Part::Observe => exactly(scene, "observe"),
+        Part::Start => exactly(scene, "start"),
+        Part::Damper(index) => match &exactly(scene, "dampers")?.value {
+            Value::Sequence(dampers) => dampers.get(index),
+            _ => None,
         },
-    };
-    let value = keys.iter().find_map(|key| exactly(part, key));
-    Some(value.unwrap_or(part).span)
+    }
 }
 
 /// The value under this very key, at any depth.
-fn exactly<'n>(node: &'n Node, key: &str) -> Option<&'n Node> {
+pub(super) fn exactly<'n>(node: &'n Node, key: &str) -> Option<&'n Node> {
     let Value::Mapping(entries) = &node.value else { return None };
     let own = entries.iter().find(|entry| entry.key == key).map(|entry| &entry.node);
     own.or_else(|| entries.iter().find_map(|entry| exactly(&entry.node, key)))

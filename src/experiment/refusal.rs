@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use super::definition::{Case, Experiment};
 use super::diagnostic::Span;
-use super::line::place_in;
+use super::line::{exactly, part_of};
 use super::recipe::{Parameter, Part, RecipeError};
 use super::word::word_of;
-use super::yaml::Node;
+use super::yaml::{Node, Value};
 
 /// Where the values of an experiment's cases are written.
 pub(super) struct Places<'t> {
@@ -27,21 +27,64 @@ impl Places<'_> {
             let mut all = self.parameters.iter();
             all.find(|(parameter, _)| sets(**parameter) && is_meant(**parameter)).map(|(_, at)| *at)
         };
-        let in_scene = |part: Option<Part>, keys: &[&str]| place_in(self.scene, part, keys);
+        let written = |within: &Node, keys: &[&str], of_part: &dyn Fn(Parameter) -> bool| {
+            let value = keys.iter().find_map(|key| exactly(within, key));
+            let is_one = |parameter: Parameter| of_part(parameter) && keys.contains(&word_of(parameter).as_str());
+            // Where no value of the scene is left to the sweep, it replaces what is stated.
+            let is_replaced = experiment.swept.iter().any(|&one| case.get(one).is_some() && is_one(one))
+                && !keys.iter().any(|key| is_swept_under(self.scene, key));
+            let stated = value.filter(|value| !is_replaced && !is_left_open(value)).map(|value| value.span);
+            stated.or_else(|| swept(&is_one)).unwrap_or(value.unwrap_or(within).span)
+        };
         let found = match meant {
             Meant::Parameter(parameter) => swept(&|one| one == *parameter),
-            Meant::Part(Part::Start, _) if self.starts.is_some() => self.starts,
-            Meant::Part(part, keys) => {
-                let of_part = |parameter: Parameter| parameter.part().is_none_or(|of| of == part.kind());
-                let by_key = |parameter: Parameter| keys.contains(&word_of(parameter).as_str());
+            Meant::Part { part: Part::Start, .. } if self.starts.is_some() => self.starts,
+            Meant::Part { part, under, keys } => {
+                let whole = part_of(self.scene, *part);
+                let within = whole.map(|whole| under.and_then(|key| exactly(whole, key)).unwrap_or(whole));
                 let any = |parameter: Parameter| parameter.part() == Some(part.kind()) && parameter.words().is_empty();
-                swept(&|one| of_part(one) && if keys.is_empty() { any(one) } else { by_key(one) })
-                    .or_else(|| in_scene(Some(*part), keys))
+                match within {
+                    Some(within) if keys.is_empty() && under.is_some() => Some(within.span),
+                    _ if keys.is_empty() => swept(&any).or(within.map(|within| within.span)),
+                    _ => Some(written(within.unwrap_or(self.scene), keys, &|parameter| {
+                        parameter.part().is_none_or(|of| of == part.kind())
+                    })),
+                }
             }
-            Meant::Keys(keys) => swept(&|one| keys.contains(&word_of(one).as_str())).or_else(|| in_scene(None, keys)),
+            Meant::Keys(keys) => Some(written(self.scene, keys, &|_| true)),
             Meant::Case => swept(&|one| case.get(one).is_some()),
         };
         found.unwrap_or(self.scene.span)
+    }
+}
+
+/// The scene leaves the value, or a part of it, to the sweep or to an assumption.
+fn is_left_open(node: &Node) -> bool {
+    any_node(node, &|key, value| {
+        key == "assumed" || value.is_swept() || matches!(value, Value::Scalar(word) if word == "assumed")
+    })
+}
+
+/// A value under this key is left to the sweep.
+fn is_swept_under(node: &Node, wanted: &str) -> bool {
+    let is_swept = |node: &Node| any_node(node, &|_, value| value.is_swept());
+    match &node.value {
+        Value::Nothing | Value::Scalar(_) => false,
+        Value::Sequence(items) => items.iter().any(|item| is_swept_under(item, wanted)),
+        Value::Mapping(entries) => entries
+            .iter()
+            .any(|entry| entry.key == wanted && is_swept(&entry.node) || is_swept_under(&entry.node, wanted)),
+    }
+}
+
+/// Some value of a node, with the key that it stands under, is such a one.
+fn any_node(node: &Node, is_one: &impl Fn(&str, &Value) -> bool) -> bool {
+    match &node.value {
+        Value::Sequence(items) => items.iter().any(|item| any_node(item, is_one)),
+        Value::Mapping(entries) => {
+            entries.iter().any(|entry| is_one(&entry.key, &entry.node.value) || any_node(&entry.node, is_one))
+        }
+        scalar => is_one("", scalar),
     }
 }
 
@@ -51,10 +94,21 @@ pub(super) enum Meant {
     #[default]
     Case,
     Parameter(Parameter),
-    /// A part of the scene; of its values the one by one of these words, if there are any.
-    Part(Part, Vec<&'static str>),
+    /// A part of the scene; of the values under a key of it the one by one of these words, if there are any.
+    Part {
+        part: Part,
+        under: Option<&'static str>,
+        keys: Vec<&'static str>,
+    },
     /// The value by one of these words.
     Keys(Vec<&'static str>),
+}
+
+impl Meant {
+    /// All of a part.
+    pub fn whole(part: Part) -> Self {
+        Self::Part { part, under: None, keys: Vec::new() }
+    }
 }
 
 /// Why a case cannot run.
@@ -81,16 +135,20 @@ impl From<RecipeError> for Refusal {
                 ..Self::default()
             },
             error @ RecipeError::Assumption(_) => error.to_string().into(),
-            RecipeError::OutOfRange { message, part: Some(part), keys } => {
-                Self { message, place: Meant::Part(part, keys), ..Self::default() }
-            }
-            RecipeError::OutOfRange { message, part: None, keys } if keys.is_empty() => message.into(),
-            RecipeError::OutOfRange { message, part: None, keys } => {
-                Self { message, place: Meant::Keys(keys), ..Self::default() }
-            }
-            error @ RecipeError::Still { part, .. } => {
-                Self { message: error.to_string(), place: Meant::Part(part, part.place_keys().into()), still: true }
-            }
+            RecipeError::OutOfRange { message, part, under, keys } => Self {
+                message,
+                place: match part {
+                    Some(part) => Meant::Part { part, under, keys },
+                    None if keys.is_empty() => Meant::Case,
+                    None => Meant::Keys(keys),
+                },
+                ..Self::default()
+            },
+            error @ RecipeError::Still { part, .. } => Self {
+                message: error.to_string(),
+                place: Meant::Part { part, under: None, keys: part.place_keys().into() },
+                still: true,
+            },
         }
     }
 }

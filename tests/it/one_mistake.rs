@@ -81,10 +81,51 @@ fn a_value_that_physics_refuses_is_marked_itself() {
 }
 
 #[test]
+fn of_a_surface_or_a_stop_the_value_that_is_refused_is_marked_and_no_other_though_that_is_swept() {
+    let damper = "[{at: 1, mass_ratio: 0.05, particle_share: 0.5, gap_ratio: 50, floor: {rigid: {restitution: 0.6}}}]";
+    let sweep = "sweep: {force_ratio: [1, 2]}";
+    let marked = |dampers: &str, swept: &str| {
+        let text =
+            BEAM.replacen(damper, dampers, 1).replacen(sweep, &format!("sweep: {{force_ratio: [1, 2]{swept}}}"), 1);
+        let problems =
+            parse_experiment(&"x".parse().unwrap(), "mine.yaml", &text, &Assumptions::default()).unwrap_err();
+        assert_eq!(problems.list.len(), 1, "{problems}");
+        let place = problems.list[0].place.unwrap();
+        text.lines().nth(place.line - 1).unwrap().chars().skip(place.column - 1).collect::<String>()
+    };
+    let one = "at: 1, mass_ratio: 0.05, particle_share: 0.5";
+    // The damping of a floor whose tuning is swept.
+    let floor = "floor: {resilient: {stiffness: tuned, damping: -1 N s/m, untuned_frequency_ratio: 2}}";
+    assert!(
+        marked(&format!("[{{{one}, gap_ratio: 50, {floor}}}]"), ", floor_tuning: [tuned, untuned]")
+            .starts_with("-1 N s/m")
+    );
+    // That of the ceiling, not of the floor.
+    let faces = "floor: {resilient: {stiffness: tuned, damping_ratio: 0.1}}, ceiling: {resilient: {stiffness: tuned, damping_ratio: -0.2}}";
+    assert!(marked(&format!("[{{{one}, gap_ratio: 50, {faces}}}]"), "").starts_with("-0.2"));
+    // The gap of the second damper, where that of the first is swept.
+    let rigid = "floor: {rigid: {restitution: 0.6}}";
+    let two = format!("[{{{one}, gap_ratio: swept, {rigid}}}, {{{one}, gap_ratio: -3, {rigid}}}]");
+    assert!(marked(&two, ", gap_ratio: [10, 20]").starts_with("-3"));
+    let stopped = |stop: &str| {
+        format!(
+            "[{{{one}, gap_ratio: 50, floor: {{resilient: {{stiffness: tuned, damping_ratio: 0.1}}}}, stop: {stop}}}]"
+        )
+    };
+    assert!(marked(&stopped("{length: 0 mm}"), "").starts_with("0 mm"));
+    assert!(
+        marked(&stopped("{length: swept, restitution: 0.5}"), ", stop_length: [1 mm, 0 mm]").starts_with("stop_length")
+    );
+}
+
+#[test]
 fn a_swept_value_that_physics_refuses_is_marked_in_the_sweep_under_its_own_name() {
     let train = "force_ratio: swept, frequency_ratio: 1}}\nsweep: {force_ratio: [1, 2]}";
     let swept = "force_ratio: swept, frequency_ratio: swept}}\nsweep: {force_ratio: [1, 2], frequency_ratio: [0, 1]}";
     assert!(marked(train, swept).starts_with("frequency_ratio"));
+    // One case of a union puts another value in the place of what is stated.
+    let union = "force_ratio: swept, frequency_ratio: 1}}\nsweep: {union: {a: {force_ratio: [1, 2]}, b: {force_ratio: [3], frequency_ratio: [0, 1]}}}";
+    assert!(marked(train, union).starts_with("frequency_ratio: [0"));
 }
 
 #[test]
@@ -119,4 +160,12 @@ fn a_range_of_an_axis_that_holds_nothing_of_the_sweep_is_told_before_anything_ru
         |range: &str| said("figure: {x: force_ratio", &format!("figure: {{x: {{column: force_ratio, range: {range}}}"));
     assert_eq!(of("[1000, 2000]"), ["nothing of `force_ratio` lies in this range"]);
     assert_eq!(of("[0.5, 1.5]"), [""; 0]);
+    // A gap that is infinite has no place on any axis.
+    let text = BEAM
+        .replace("gap_ratio: 50", "gap_ratio: swept")
+        .replace("sweep: {force_ratio: [1, 2]}", "sweep: {force_ratio: [1, 2], gap_ratio: [10, 20, infinite]}")
+        .replace("figure: {x: force_ratio", "figure: {by: force_ratio, x: {column: gap_ratio, range: [30, 40]}");
+    let problems = parse_experiment(&"x".parse().unwrap(), "mine.yaml", &text, &Assumptions::default()).unwrap_err();
+    assert_eq!(problems.list[0].message, "nothing of `gap_ratio` lies in this range", "{problems}");
+    assert_eq!(problems.list[0].help.as_deref(), Some("`gap_ratio` goes from 10 to 20 here"));
 }

@@ -470,7 +470,9 @@ pub enum RecipeError {
         message: String,
         /// The part of the scene that it belongs to, where that is known.
         part: Option<Part>,
-        /// Words by which it is written in that part, or swept; the first that is there is meant.
+        /// The key in that part under which it is written, if it is not the part's own.
+        under: Option<&'static str>,
+        /// Words by which it is written there, or swept; the first that is there is meant.
         keys: Vec<&'static str>,
     },
     /// A force acts, or motion is observed, where the structure does not move.
@@ -490,13 +492,21 @@ pub enum RecipeError {
 impl RecipeError {
     /// A value that physics refuses, of a place to be named.
     pub(super) fn out_of_range(message: impl Into<String>) -> Self {
-        Self::OutOfRange { message: message.into(), part: None, keys: Vec::new() }
+        Self::OutOfRange { message: message.into(), part: None, under: None, keys: Vec::new() }
     }
 
     /// Names the part of the scene, unless that is done.
     pub(super) fn within(mut self, within: Part) -> Self {
         if let Self::OutOfRange { part, .. } = &mut self {
             part.get_or_insert(within);
+        }
+        self
+    }
+
+    /// Names the key in the part under which the value is written, as `floor`.
+    pub(super) fn under(mut self, key: &'static str) -> Self {
+        if let Self::OutOfRange { under, .. } = &mut self {
+            under.get_or_insert(key);
         }
         self
     }

@@ -183,7 +183,7 @@ impl StopRecipe {
 
     fn read(&self, inputs: &Inputs<'_>) -> Result<LimitStop, RecipeError> {
         let length = inputs.get(&self.length)?;
-        above("the limit stop's length", length, 0.0)?;
+        above("the limit stop's length", length, 0.0).map_err(|error| error.at_keys(&["length", "stop_length"]))?;
         let restitution = coefficient(inputs.get(&self.restitution)?)?;
         Ok(LimitStop { length, restitution })
     }
@@ -298,11 +298,10 @@ impl Placed<'_> {
         let Self { recipe, at, particle_mass, enclosure_mass, .. } = *self;
         let gap = self.gap(base, frequency).map_err(|error| error.at_keys(&["gap_ratio", "gap", "filling"]))?;
         let stop = recipe.stop.as_ref().map(|stop| stop.read(base.inputs)).transpose();
-        let stop = stop.map_err(|error| error.at_keys(&["stop_length", "stop"]))?;
-        let walls = self.walls(base).map_err(|error| error.at_keys(&["wall_stiffness_ratio", "walls"]))?;
+        let stop = stop.map_err(|error| error.under("stop"))?;
+        let walls = self.walls(base).map_err(|error| error.under("walls"))?;
         let surface = |recipe: &SurfaceRecipe, key: &'static str| {
-            let keys = ["floor_stiffness_ratio", "floor_tuning", key, "floor"];
-            recipe.resolve(base, particle_mass, frequency).map_err(|error| error.at_keys(&keys))
+            recipe.resolve(base, particle_mass, frequency).map_err(|error| error.under(key))
         };
         let (floor, ceiling) = (surface(&recipe.floor, "floor")?, surface(&recipe.ceiling, "ceiling")?);
         Ok(Damper { at, particle_mass, enclosure_mass, gap, floor, ceiling, stop, walls })
@@ -347,11 +346,13 @@ impl Placed<'_> {
         };
         let inputs = base.inputs;
         let stiffness_ratio = inputs.get(&walls.stiffness_ratio)?;
-        above("wall_stiffness_ratio", stiffness_ratio, 0.0)?;
+        above("wall_stiffness_ratio", stiffness_ratio, 0.0)
+            .map_err(|error| error.at_keys(&["stiffness_ratio", "wall_stiffness_ratio"]))?;
         let share = inputs.needed(walls.ceiling_mass_ratio.as_ref(), Slot::CeilingMassRatio, "soft walls need")?;
         let ceiling_mass = share * mass.mass;
         if !(ceiling_mass > 0.0 && ceiling_mass < mass.mass) {
-            return Err(RecipeError::out_of_range("the ceiling body's mass must lie between 0 and the base mass"));
+            let message = "the ceiling body's mass must lie between 0 and the base mass";
+            return Err(RecipeError::out_of_range(message).at_keys(&["ceiling_mass_ratio"]));
         }
         let stiffness = stiffness_ratio * mass.stiffness;
         Ok(Some(Walls { stiffness, damping: inputs.get(&walls.damping)?, ceiling_mass }))
@@ -369,8 +370,12 @@ impl SurfaceRecipe {
         match self {
             Self::Rigid { restitution } => Ok(Surface::Rigid { restitution: coefficient(inputs.get(restitution)?)? }),
             Self::Resilient { stiffness, untuned_ratio, damping, damping_curve, no_tension } => {
-                let stiffness = stiffness.resolve(base, particle_mass, frequency, untuned_ratio.as_ref())?;
-                above("the surface's stiffness", stiffness, 0.0)?;
+                let stiffness = stiffness
+                    .resolve(base, particle_mass, frequency, untuned_ratio.as_ref())
+                    .and_then(|stiffness| above("the surface's stiffness", stiffness, 0.0).map(|()| stiffness))
+                    .map_err(|error| {
+                        error.at_keys(&["stiffness_ratio", "stiffness", "floor_stiffness_ratio", "floor_tuning"])
+                    })?;
                 let by_half_cycles = || {
                     let needs = "equivalent viscous damping needs";
                     let curve = inputs.needed(damping_curve.as_ref(), Slot::DampingCurve, needs)?;
@@ -379,7 +384,8 @@ impl SurfaceRecipe {
                 let damping = match damping {
                     ContactDampingRecipe::Damping(given) => match inputs.get(given)? {
                         ContactDampingConstant::Constant(value) => {
-                            at_least("the surface's damping", value, 0.0)?;
+                            at_least("the surface's damping", value, 0.0)
+                                .map_err(|error| error.at_keys(&["damping"]))?;
                             ContactDamping::Constant(value)
                         }
                         ContactDampingConstant::EquivalentViscous => by_half_cycles()?,
@@ -387,7 +393,7 @@ impl SurfaceRecipe {
                     ContactDampingRecipe::Ratio(given) => match inputs.get(given)? {
                         ContactDampingRatio::Ratio(ratio) => {
                             at_least("contact_damping_ratio", ratio, 0.0)
-                                .map_err(|error| error.at_keys(&["contact_damping_ratio", "damping_ratio"]))?;
+                                .map_err(|error| error.at_keys(&["damping_ratio", "contact_damping_ratio"]))?;
                             ContactDamping::Constant(2.0 * ratio * (stiffness * particle_mass).sqrt())
                         }
                         ContactDampingRatio::EquivalentViscous => by_half_cycles()?,
@@ -424,7 +430,10 @@ impl StiffnessRecipe {
                 FloorStiffness::Loaded => tuned(frequency(Reference::Loaded)),
                 FloorStiffness::Untuned => {
                     let needs = "an untuned surface needs";
-                    tuned(base.natural() * inputs.needed(untuned_ratio, Slot::UntunedFrequencyRatio, needs)?)
+                    let ratio = inputs.needed(untuned_ratio, Slot::UntunedFrequencyRatio, needs)?;
+                    above("untuned_frequency_ratio", ratio, 0.0)
+                        .map_err(|error| error.at_keys(&["untuned_frequency_ratio"]))?;
+                    tuned(base.natural() * ratio)
                 }
             },
         })
@@ -475,5 +484,6 @@ fn coefficient(restitution: f64) -> Result<f64, RecipeError> {
     if (0.0..=1.0).contains(&restitution) {
         return Ok(restitution);
     }
-    Err(RecipeError::out_of_range(format!("restitution lies between 0 and 1, not at {restitution}")))
+    let message = format!("restitution lies between 0 and 1, not at {restitution}");
+    Err(RecipeError::out_of_range(message).at_keys(&["restitution"]))
 }
