@@ -21,18 +21,20 @@ pub(crate) struct RigidMotions(Vec<Turn>);
 impl RigidMotions {
     /// `None` if each is along a coordinate already.
     pub(crate) fn of(stiffness: &Matrix, damping: &Matrix) -> Option<Self> {
-        let by_springs = Turn::of(stiffness, &(0..stiffness.order).collect::<Vec<_>>());
+        let mut by_springs = Turn::of_springs(stiffness);
         let turned = by_springs.as_ref().map(|turn| [turn.felt_by(stiffness), turn.form(damping)]);
         let [stiffness, damping] = turned.as_ref().map_or([stiffness, damping], |[k, c]| [k, c]);
-        let has_spring = |i: usize| (0..stiffness.order).any(|j| stiffness.at(i, j) != 0.0);
-        let unsprung: Vec<usize> = (0..stiffness.order).filter(|&i| !has_spring(i)).collect();
+        if let Some(turn) = &mut by_springs {
+            turn.damped.retain(|&f| is_felt(damping, f));
+        }
+        let unsprung: Vec<usize> = (0..stiffness.order).filter(|&i| !is_felt(stiffness, i)).collect();
         let turns: Vec<Turn> = by_springs.into_iter().chain(Turn::of(damping, &unsprung)).collect();
         (!turns.is_empty()).then_some(Self(turns))
     }
 
     /// Some motion along several coordinates is felt by no spring.
     pub(crate) fn are_left_by(stiffness: &Matrix) -> bool {
-        Turn::of(stiffness, &(0..stiffness.order).collect::<Vec<_>>()).is_some()
+        Turn::of_springs(stiffness).is_some()
     }
 
     /// Tᵀ M T.
@@ -65,9 +67,17 @@ struct Turn {
     held: Vec<usize>,
     /// Of each motion what the held ones do.
     with: Vec<Vec<f64>>,
+    /// Those of the free that dashpots feel.
+    damped: Vec<usize>,
 }
 
 impl Turn {
+    /// Of all motions that no spring feels.
+    fn of_springs(stiffness: &Matrix) -> Option<Self> {
+        let turn = Self::of(stiffness, &(0..stiffness.order).collect::<Vec<_>>())?;
+        Some(Self { damped: turn.free.clone(), ..turn })
+    }
+
     /// Of the motions of coordinates `among` others that a matrix does not feel; `None` if there is none but of those that it does not feel
     /// by themselves, and where it gives energy.
     fn of(matrix: &Matrix, among: &[usize]) -> Option<Self> {
@@ -88,7 +98,19 @@ impl Turn {
             let push: Vec<f64> = held.iter().map(|&i| -matrix.at(i, f) / (unit(i) * unit(f))).collect();
             factors.solve(&push).iter().zip(&held).map(|(z, &i)| z * unit(f) / unit(i)).collect()
         };
-        Some(Self { order: matrix.order, with: free.iter().map(motion).collect(), free, held })
+        let with: Vec<Vec<f64>> = free.iter().map(motion).collect();
+        let turn = Self { order: matrix.order, with, free, held, damped: Vec::new() };
+        // Of a matrix that gives no energy no row feels what its diagonal does not.
+        let most = |&f: &usize, with: &Vec<f64>| {
+            turn.held.iter().zip(with).fold(unit(f), |sum, (&i, z)| sum + unit(i) * z.abs())
+        };
+        let most: Vec<f64> = turn.free.iter().zip(&turn.with).map(|(f, with)| most(f, with)).collect();
+        let largest = felt.iter().map(|&i| unit(i)).fold(0.0, f64::max);
+        let feels_none = |(i, row): (usize, &[f64])| {
+            let bound = if matrix.at(i, i) > 0.0 { NOTHING.sqrt() * unit(i) } else { NOTHING * largest };
+            turn.products(row).zip(&most).all(|((_, [sum, _]), most)| sum.abs() <= bound * most)
+        };
+        matrix.entries.chunks_exact(matrix.order).enumerate().all(feels_none).then_some(turn)
     }
 
     /// Tᵀ A T.
@@ -116,8 +138,11 @@ impl Turn {
     fn accelerations(&self, mut of: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
         for row in &mut of {
             let (stiffness, damping) = row.split_at_mut(self.order);
-            self.free.iter().for_each(|&f| stiffness[f] = 0.0);
-            self.times(damping);
+            let felt: Vec<f64> =
+                self.products(damping).map(|(f, [sum, _])| if self.damped.contains(&f) { sum } else { 0.0 }).collect();
+            for (&f, felt) in self.free.iter().zip(felt) {
+                [stiffness[f], damping[f]] = [0.0, felt];
+            }
         }
         for (&f, with) in self.free.iter().zip(&self.with) {
             let of_free = of[f].clone();
@@ -146,12 +171,25 @@ impl Turn {
 
     /// A row of a matrix times T. Where no more than rounding is left of a sum it is zero, to the bit.
     fn times(&self, row: &mut [f64]) {
-        for (&f, with) in self.free.iter().zip(&self.with) {
-            let terms = || self.held.iter().zip(with).map(|(&i, share)| share * row[i]).chain([row[f]]);
-            let (sum, size) = terms().fold((0.0, 0.0), |(sum, size), term: f64| (sum + term, size + term.abs()));
-            row[f] = if f64::abs(sum) <= ROUNDING * self.order as f64 * size { 0.0 } else { sum };
+        let rounding = ROUNDING * self.order as f64;
+        let products: Vec<_> = self.products(row).collect();
+        for (f, [sum, size]) in products {
+            row[f] = if sum.abs() <= rounding * size { 0.0 } else { sum };
         }
     }
+
+    /// A row of a matrix times each motion, which is that of its free coordinate: the sum, and that of its terms' sizes.
+    fn products(&self, row: &[f64]) -> impl Iterator<Item = (usize, [f64; 2])> {
+        self.free.iter().zip(&self.with).map(|(&f, with)| {
+            let terms = self.held.iter().zip(with).map(|(&i, share)| share * row[i]).chain([row[f]]);
+            (f, terms.fold([0.0, 0.0], |[sum, size], term: f64| [sum + term, size + term.abs()]))
+        })
+    }
+}
+
+/// A column of a matrix, not all of it zero.
+fn is_felt(matrix: &Matrix, column: usize) -> bool {
+    (0..matrix.order).any(|i| matrix.at(i, column) != 0.0)
 }
 
 /// Which coordinates of a matrix with a unit diagonal are held, taken largest first; `None` where it is not positive semidefinite.
