@@ -5,6 +5,7 @@
 
 pub(crate) mod cells;
 mod dissipation;
+pub(crate) mod ends;
 pub(crate) mod gains;
 pub(crate) mod integral;
 mod lyapunov;
@@ -36,6 +37,7 @@ use crate::contact_state::load::{self, Load, Steady};
 use crate::error::EngineError;
 use crate::flow::cells::Cells;
 use crate::flow::dissipation::Dissipation;
+use crate::flow::ends::Ends;
 use crate::flow::gains::{Closed, VelocitySquare};
 use crate::flow::parabola::Parabola;
 use crate::flow::series::Series;
@@ -89,6 +91,8 @@ pub(crate) struct Flow {
     /// Closed forms of its integrals, where they keep their digits; worked out when they are asked for.
     closed: OnceCell<Option<Closed>>,
     velocity_squares: OnceCell<Vec<VelocitySquare>>,
+    /// Whether short segments leave their integrals digits.
+    ends: OnceCell<Ends>,
     dissipation: OnceCell<Dissipation>,
     /// It may be left for the next flow in block coordinates: these are as many as ask for them, and only the drive moves beside them.
     pub(crate) has_ways: bool,
@@ -197,6 +201,7 @@ impl Flow {
             faces: OnceCell::new(),
             closed: OnceCell::new(),
             velocity_squares: OnceCell::new(),
+            ends: OnceCell::new(),
             dissipation: OnceCell::new(),
             has_ways,
             ways: Ways::default(),
@@ -215,6 +220,7 @@ impl Flow {
             + self.cells.as_ref().map_or(0, |_| Cells::size())
             + self.closed.get().and_then(Option::as_ref).map_or(0, Closed::size)
             + self.velocity_squares.get().map_or(0, |rows| rows.iter().map(VelocitySquare::size).sum())
+            + self.ends.get().map_or(0, Ends::size)
             + self.dissipation.get().map_or(0, Dissipation::size)
             + self.size_of_ways()
     }
@@ -235,8 +241,17 @@ impl Flow {
 
     /// The squares of the observed velocities, integrated in closed form.
     pub(crate) fn velocity_squares(&self, closed: &Closed) -> &[VelocitySquare] {
-        let rows = || self.rows.observed.iter().map(|&row| self.rows.row(row)).collect::<Vec<_>>();
-        self.velocity_squares.get_or_init(|| closed.velocity_squares(&rows()))
+        self.velocity_squares.get_or_init(|| closed.velocity_squares(&self.observed()))
+    }
+
+    /// Whether short segments leave their integrals digits.
+    #[inline(always)]
+    pub(crate) fn ends(&self) -> &Ends {
+        self.ends.get_or_init(|| Ends::new(&self.observed(), &self.blocks))
+    }
+
+    fn observed(&self) -> Vec<&Row> {
+        self.rows.observed.iter().map(|&row| self.rows.row(row)).collect()
     }
 
     /// Row of the face on one side of particle j's enclosure.

@@ -2,14 +2,11 @@
 
 use super::March;
 use super::effects::Effects;
-use crate::contact_state::bank::{Blocks, Phases};
 use crate::flow::Flow;
+use crate::flow::ends::cancel;
 use crate::response::audit::{self, Force};
 use crate::response::extremes::Stretch;
 use crate::system::DrivePhase;
-
-/// Share of an integral that its rounding stays below.
-const LOST: f64 = 1e-9;
 
 /// How the observed signals are integrated over a segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,8 +62,9 @@ impl<E: Effects> March<'_, E> {
     /// The integrals are differences of end values: not of motion without damping, nor between jumps of the force that follow
     /// each other within a small part of the slowest turn. Half cycles leave a contact state before the equations of its blocks pay,
     /// and which of many dampings are still known hangs on the runs before: what is summed up together must not.
+    #[inline(always)]
     fn integration(&self, length: f64) -> Integration {
-        if self.is_brief || self.flow.is_brief(length) && self.ends_cancel(length) {
+        if self.is_brief || self.flow.is_brief(length) && !self.ends_keep_digits(length) {
             Integration::Panels
         } else if !self.is_passing && self.flow.closed().is_some() {
             Integration::Visits
@@ -75,18 +73,18 @@ impl<E: Effects> March<'_, E> {
         }
     }
 
-    /// In so short a segment the closed form of ∫ s′² is a difference of squares that may be larger than it by far: its rounding is some
-    /// ε (amplitude·radius)² over the slowest rate.
+    /// Of a short segment. A flow that is left at once is not worth its bounds.
+    #[inline(always)]
+    fn ends_keep_digits(&self, length: f64) -> bool {
+        let turn = self.flow.turned_by_the_slowest(length);
+        !self.is_passing && self.flow.ends().keep_digits([&self.c, &self.c_end], turn)
+            || self.amplitudes_keep_digits(turn)
+    }
+
     #[cold]
-    fn ends_cancel(&self, length: f64) -> bool {
+    fn amplitudes_keep_digits(&self, turn: f64) -> bool {
         let Flow { bank, rows, .. } = &*self.flow;
-        rows.observed.iter().map(|&row| rows.row(row)).any(|row| {
-            let rate = |c| row.together(c).map(|shares| shares.rate.sum()).sum::<f64>();
-            let reach = |(blocks, shares): (&Blocks, Phases)| (blocks.amplitudes(shares) * blocks.radius).sum();
-            let reach: f64 = bank.blocks.iter().zip(row.together(&self.c)).map(reach).sum();
-            let fastest = rate(&self.c).abs().max(rate(&self.c_end).abs());
-            f64::EPSILON * reach * reach > LOST * (fastest * fastest) * self.flow.turned_by_the_slowest(length)
-        })
+        !rows.observed.iter().any(|&row| cancel(rows.row(row), bank, [&self.c, &self.c_end], turn))
     }
 
     /// The same of one segment by itself.
