@@ -172,7 +172,9 @@ struct Substituted<'a, E> {
 impl<E> Substituted<'_, E> {
     fn simulation<'s>(&self, it: &Simulation<'s>) -> Simulation<'s> {
         let solver = if it.solver == SolverChoice::EventDriven { self.solver } else { it.solver };
-        Simulation { solver, rigour: self.worth.rigour(it.rigour), ..*it }
+        // The steps of a maximum ask for ensembles themselves.
+        let rigour = if it.rigour == Rigour::Step { it.rigour } else { self.worth.rigour(it.rigour) };
+        Simulation { solver, rigour, ..*it }
     }
 }
 

@@ -11,7 +11,7 @@ use super::refine;
 use super::row_failure::RowFailure;
 use super::row_fingerprint::RowFingerprints;
 use super::spent::Spent;
-use super::work::rigour_of_others;
+use super::work::rigours_of_others;
 use crate::experiment::{Case, Experiment, RowSource};
 use crate::measure::Rigour;
 
@@ -102,6 +102,6 @@ fn ahead(experiment: &Experiment, job: &Job, spent: &Spent) -> Option<f64> {
     let each = experiment.mean_over.len().max(1) as u64;
     let all = evaluations(experiment, job);
     let results = u64::from(job.variant == 0).min(all);
-    let of = |rigour, count| spent.ahead(solver, rigour, each * count);
-    Some(of(Rigour::Result, results)? + of(rigour_of_others(experiment), all - results)?)
+    let of = |rigours: &[Rigour], count| spent.ahead(solver, rigours, each * count);
+    Some(of(&[Rigour::Result], results)? + of(rigours_of_others(experiment), all - results)?)
 }

@@ -1,11 +1,14 @@
 //! A point that is looked for over one parameter: the maximum of a measure, or the onset of events.
 //!
+//! Of a maximum every point is run once. Those that come near the highest are then looked at with the runs beside them, so that the mean
+//! of an ensemble stands there where the motion is chaotic: no luck of a single run is the maximum.
+//!
 //! For a maximum each round halves the two intervals beside the best point of each of the highest peaks of a grid, as a low peak may hide
 //! a higher one between its points. So its place is known to within the distance to its neighbours, and its value to what a parabola
 //! rises between them; a peak that no point of the grid is next to is not seen. An onset lies between the last point of the grid without an event and the first one with some;
 //! as events are certified, halving that interval closes in on it to [`KNOWN`] of the parameter. Where the motion is chaotic, events
 //! begin here and there between two points of the grid, and sooner in a longer run: the onset is then known to no more than their
-//! distance. Values come from [`Evaluate`] as they are: ensemble means where the motion is chaotic.
+//! distance. Its values are ensemble means where the motion is chaotic.
 
 use std::ops::RangeInclusive;
 
@@ -14,7 +17,7 @@ use rayon::prelude::*;
 use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
 use super::row_failure::RowFailure;
 use crate::experiment::{MOST_PEAKS, Maximise, ParameterValue, SearchPoint};
-use crate::measure::Evaluated;
+use crate::measure::{Evaluated, Rigour, SolverChoice};
 use crate::optimise::{Point, overshoot};
 use crate::text::words;
 
@@ -23,6 +26,14 @@ const KNOWN: f64 = 1e-12;
 
 /// Points of the grid of an onset that are tried at once.
 const AT_ONCE: usize = 8;
+
+/// Share of the whole rise of a measure within which a point comes near the highest. A single run of chaotic motion is off from its mean by a
+/// few per cent; where two motions attract it may be the lower one, and the mean of both the maximum. [`SPREADS`] stands in its place where
+/// runs are seen to spread more.
+const NEAR: f64 = 0.8;
+
+/// Standard deviations of single runs within which a point comes near the highest.
+const SPREADS: f64 = 4.0;
 
 /// Where the point lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +58,7 @@ struct Tried {
     at: f64,
     value: f64,
     evaluated: Evaluated,
+    rigour: Rigour,
 }
 
 /// Where a point is looked for: one case, measured at values of the parameter.
@@ -59,7 +71,7 @@ pub(super) struct Along<'a, E, D> {
     pub maximise: &'a Maximise,
     /// See `simulation`.
     pub measure: usize,
-    /// Told after every point.
+    /// Called after every point.
     pub done: D,
 }
 
@@ -77,9 +89,10 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
     }
 
     fn maximum(&self) -> Result<Sought, RowFailure> {
-        let mut tried = self.all(&self.maximise.grid)?;
+        let mut tried = self.all(&self.maximise.grid, Rigour::Step)?;
         tried.sort_by(|a, b| a.at.total_cmp(&b.at));
         tried.dedup_by(|a, b| a.at == b.at);
+        self.look_at_highest(&mut tried)?;
         let peaks = peaks(&tried);
         for _ in 0..self.maximise.refine {
             let mut new = Vec::new();
@@ -90,8 +103,9 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
             new.sort_by(f64::total_cmp);
             new.dedup();
             new.retain(|at| tried.iter().all(|known| known.at != *at));
-            tried.extend(self.all(&new)?);
+            tried.extend(self.all(&new, Rigour::Step)?);
             tried.sort_by(|a, b| a.at.total_cmp(&b.at));
+            self.look_at_highest(&mut tried)?;
         }
         let best = best(&tried, &(f64::NEG_INFINITY..=f64::INFINITY)).ok_or(RowFailure::NoGrid)?;
         let at = tried[best].at;
@@ -100,12 +114,39 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
         Ok(Sought { evaluated: tried.swap_remove(best).evaluated, place: Place { at, within }, rise })
     }
 
+    /// Looks at the points that come near the highest, until no other does.
+    fn look_at_highest(&self, tried: &mut [Tried]) -> Result<(), RowFailure> {
+        // A fixed step is a run alone, whoever looks.
+        if self.simulation.solver != SolverChoice::EventDriven {
+            return Ok(());
+        }
+        loop {
+            let looked = || tried.iter().filter(|one| one.rigour == Rigour::Look);
+            let highest = |all: &mut dyn Iterator<Item = &Tried>| all.map(|one| one.value).reduce(f64::max);
+            let Some(best) = highest(&mut looked()).or_else(|| highest(&mut tried.iter())) else { return Ok(()) };
+            let lowest = tried.iter().map(|one| one.value).fold(best, f64::min);
+            let spread = looked().map(|one| one.evaluated.measured[self.measure].spread).fold(0.0, f64::max);
+            // A single run is all that stands for a motion without an ensemble.
+            let is_mean = self.simulation.settings.ensemble >= 2 && best.is_finite();
+            let near = if is_mean { best - f64::max(NEAR * (best - lowest), SPREADS * spread) } else { best };
+            let new: Vec<usize> =
+                (0..tried.len()).filter(|&i| tried[i].rigour == Rigour::Step && tried[i].value >= near).collect();
+            if new.is_empty() {
+                return Ok(());
+            }
+            let again: Vec<_> = new.par_iter().map(|&i| self.tried(tried[i].at, Rigour::Look)).collect();
+            for (i, again) in new.into_iter().zip(again) {
+                tried[i] = again?;
+            }
+        }
+    }
+
     /// The smallest value of the parameter at which the measure is above zero, as far as the grid tells.
     fn onset(&self) -> Result<Sought, RowFailure> {
         let mut tried = Vec::new();
         // What lies beyond the first point with events is not asked for.
         for points in self.maximise.grid.chunks(AT_ONCE) {
-            tried.extend(self.all(points)?);
+            tried.extend(self.all(points, Rigour::Look)?);
             if tried.iter().any(|one: &Tried| one.value > 0.0) {
                 break;
             }
@@ -121,7 +162,7 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
             if (above.at - below).abs() <= KNOWN * above.at.abs() || at <= below || at >= above.at {
                 break;
             }
-            let tried = self.one(at)?;
+            let tried = self.one(at, Rigour::Look)?;
             is_chaotic |= tried.evaluated.may_be_chaotic();
             if tried.value > 0.0 {
                 above = tried;
@@ -134,26 +175,26 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
     }
 
     /// Several points; of several failures the first in order is reported, not the first in time.
-    fn all(&self, points: &[f64]) -> Result<Vec<Tried>, RowFailure> {
-        let tried: Vec<_> = points.par_iter().map(|&at| self.one(at)).collect();
+    fn all(&self, points: &[f64], rigour: Rigour) -> Result<Vec<Tried>, RowFailure> {
+        let tried: Vec<_> = points.par_iter().map(|&at| self.one(at, rigour)).collect();
         tried.into_iter().collect()
     }
 
-    fn one(&self, at: f64) -> Result<Tried, RowFailure> {
-        let tried = self.tried(at);
+    fn one(&self, at: f64, rigour: Rigour) -> Result<Tried, RowFailure> {
+        let tried = self.tried(at, rigour);
         (self.done)();
         tried
     }
 
-    fn tried(&self, at: f64) -> Result<Tried, RowFailure> {
+    fn tried(&self, at: f64, rigour: Rigour) -> Result<Tried, RowFailure> {
         let Self { simulation, maximise, .. } = self;
         let mut recipe = simulation.recipe.clone();
         let place = |reason| RowFailure::At { parameter: words::of_key(&maximise.over), at, reason: Box::new(reason) };
         recipe.set(maximise.over, ParameterValue::Number(at)).map_err(|error| place(error.into()))?;
         let evaluated =
-            evaluate_guarded(self.evaluate, &Simulation { recipe: &recipe, ..*simulation }).map_err(place)?;
+            evaluate_guarded(self.evaluate, &Simulation { recipe: &recipe, rigour, ..*simulation }).map_err(place)?;
         match evaluated.measured.get(self.measure) {
-            Some(measured) if !measured.value.is_nan() => Ok(Tried { at, value: measured.value, evaluated }),
+            Some(measured) if !measured.value.is_nan() => Ok(Tried { at, value: measured.value, evaluated, rigour }),
             _ => Err(place(RowFailure::NoValue(words::of_key(&maximise.measure)))),
         }
     }

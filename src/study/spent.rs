@@ -1,7 +1,7 @@
 //! What simulations have cost, so that the next run can say how long it will take: processor time, metered where the engine
 //! is asked, by experiment and by kind of simulation. It stands beside the results and in nothing that is handed on.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::sync::Mutex;
 
@@ -54,12 +54,16 @@ impl Spent {
     /// Keeps it, beside what an earlier run has spent on much more of the same. Without it nothing is lost but a guess.
     pub(super) fn keep(&self, layout: &Layout, id: &ExperimentId) {
         let mut all = Self::read(layout, id);
-        for (kind, new) in &self.0 {
-            let old = all.0.entry(kind.clone()).or_default();
-            if 2 * new.simulations >= old.simulations {
-                *old = *new;
-            }
-        }
+        let is_more = |solver: &str| {
+            let most = |spent: &Self| spent.of_solver(solver).map(|(_, cost)| cost.simulations).max().unwrap_or(0);
+            2 * most(self) >= most(&all)
+        };
+        let solvers: BTreeSet<&str> =
+            self.0.keys().map(|kind| solver_of(kind)).filter(|solver| is_more(solver)).collect();
+        // Looks belong to the steps that they follow: kinds of one solver stand together.
+        all.0.retain(|kind, _| !solvers.contains(solver_of(kind)));
+        let kept = self.0.iter().filter(|(kind, _)| solvers.contains(solver_of(kind)));
+        all.0.extend(kept.map(|(kind, cost)| (kind.clone(), *cost)));
         if let Ok(text) = serde_json::to_vec(&all)
             && !self.is_nothing()
         {
@@ -72,15 +76,24 @@ impl Spent {
         let _ = fs::remove_file(layout.path(&name(id)));
     }
 
-    /// Estimated time of `simulations` of a kind, s; by others of the same solver if there was none so far, and `None` without any.
-    pub(super) fn ahead(&self, solver: SolverChoice, rigour: Rigour, simulations: u64) -> Option<f64> {
+    /// Estimated time of `simulations` of the first of these kinds with what they bring with them of the others, s; by others of the same
+    /// solver if there was none so far, and `None` without any.
+    pub(super) fn ahead(&self, solver: SolverChoice, rigours: &[Rigour], simulations: u64) -> Option<f64> {
         if simulations == 0 {
             return Some(0.0);
         }
-        let of_solver = || self.0.iter().find(|(kind, _)| kind.starts_with(&format!("{} ", solver.label())));
-        let known = self.0.get(&kind(solver, rigour)).or_else(|| of_solver().map(|(_, cost)| cost));
-        let Cost { simulations: before, seconds } = *known?;
+        let mut known: Vec<&Cost> = rigours.iter().filter_map(|rigour| self.0.get(&kind(solver, *rigour))).collect();
+        if known.is_empty() {
+            known.extend(self.of_solver(&solver.label()).next().map(|(_, cost)| cost));
+        }
+        let before = known.first()?.simulations;
+        let seconds: f64 = known.iter().map(|cost| cost.seconds).sum();
         (before > 0).then(|| seconds / before as f64 * simulations as f64)
+    }
+
+    /// The kinds of one solver.
+    fn of_solver(&self, solver: &str) -> impl Iterator<Item = (&String, &Cost)> {
+        self.0.iter().filter(move |(kind, _)| solver_of(kind) == solver)
     }
 
     /// What a simulation took on average, s; `None` if there was none.
@@ -93,6 +106,11 @@ impl Spent {
     pub(super) fn total(&self) -> Option<f64> {
         (!self.is_nothing()).then(|| self.0.values().map(|cost| cost.seconds).sum())
     }
+}
+
+/// The first word of a kind.
+fn solver_of(kind: &str) -> &str {
+    kind.split(' ').next().unwrap_or(kind)
 }
 
 fn kind(solver: SolverChoice, rigour: Rigour) -> String {

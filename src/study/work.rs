@@ -18,7 +18,7 @@ use super::spent::Spent;
 use super::tabulate::{self, Outcome, Row};
 use super::variant::Variant;
 use crate::dynamics::is_interrupted;
-use crate::experiment::{Case, Experiment, Recipe};
+use crate::experiment::{Case, Experiment, Recipe, SearchPoint};
 use crate::measure::{Link, Rigour};
 use crate::table::RowFingerprint;
 use crate::text::words;
@@ -178,13 +178,17 @@ pub(super) fn asked<'a>(
         each_cycle: experiment.each_cycle.as_ref().filter(|_| job.variant == 0),
         tolerances: &experiment.tolerances,
         link: Link::None,
-        rigour: if job.variant == 0 { Rigour::Result } else { rigour_of_others(experiment) },
+        rigour: if job.variant == 0 { Rigour::Result } else { rigours_of_others(experiment)[0] },
     }
 }
 
-/// What is asked of simulations that are no results: a maximum is looked for, under whatever values.
-pub(super) fn rigour_of_others(experiment: &Experiment) -> Rigour {
-    if experiment.maximise.is_some() { Rigour::Look } else { Rigour::Variant }
+/// What is asked of simulations that are no results; the first of each, the others of some. A point is looked for under whatever values.
+pub(super) fn rigours_of_others(experiment: &Experiment) -> &'static [Rigour] {
+    match experiment.maximise.as_ref().map(|maximise| maximise.wanted) {
+        None => &[Rigour::Variant],
+        Some(SearchPoint::Onset) => &[Rigour::Look],
+        Some(SearchPoint::Maximum) => &[Rigour::Step, Rigour::Look],
+    }
 }
 
 fn needs_shape(experiment: &Experiment) -> bool {
@@ -213,9 +217,9 @@ fn simulate(
     // Histories of the points that are not the maximum are not wanted.
     let trace = simulation.trace.filter(|_| measures_need_trace(&experiment.measures));
     let shape = simulation.shape.filter(|_| needs_shape(experiment));
-    let look = Simulation { trace, energies: None, shape, each_cycle: None, rigour: Rigour::Look, ..simulation };
+    let point = Simulation { trace, energies: None, shape, each_cycle: None, ..simulation };
     let Sought { mut evaluated, place, rise } =
-        Along { evaluate, simulation: look, maximise, measure, done }.found()?;
+        Along { evaluate, simulation: point, maximise, measure, done }.found()?;
     if job.variant == 0 {
         // The row itself is a result: the point once more, with all that proves it.
         let mut there = recipe.clone();

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use shotdamp::dynamics::Proof;
-use shotdamp::measure::{Evaluated, Measured};
+use shotdamp::measure::{Evaluated, Measured, Rigour};
 use shotdamp::scene::Excitation;
 use shotdamp::study::{Evaluate, Event, EventHandler, IgnoreEvents, RowFailure, Simulation};
 use shotdamp::table::Table;
@@ -180,20 +180,49 @@ fn other_solvers_run_at_the_same_points_and_the_range_is_what_makes_stale() {
 #[test]
 fn a_low_peak_of_a_grid_that_hides_the_highest_is_found() {
     // By the points of the grid the peaks are 2.1 at 3, 1.6 at 5 and 1.1 at 7; beside the last one the curve rises to 4 at 7.4.
-    fn curve(x: f64) -> f64 {
-        let hill = |at: f64, height: f64, width: f64| height / (1.0 + (x - at) * (x - at) / (width * width));
-        hill(3.0, 2.0, 0.3) + hill(5.0, 1.5, 0.3) + hill(7.4, 4.0, 0.25)
-    }
-    let refined = "frequency_ratio: {refined: {from: 0.2, to: 7, start: 60 points, tolerance: 1 %}}";
-    let largest = RESPONSE
-        .replace(&format!(", {refined}"), "")
-        .replace(
-            "run:",
-            "maximise: {rms_velocity: {over: frequency_ratio, in: [1, 2, 3, 4, 5, 6, 7, 8, 9], refine: 12}}\nrun:",
-        )
-        .replace("x: frequency_ratio, y: rms_velocity, by: gap_ratio", "x: gap_ratio, y: rms_velocity");
-    let (_, table) = run(&Curve(|x, _| (curve(x), 0.0, false)), 2, &largest, &IgnoreEvents);
-    let [found, at] = ["rms_velocity", "frequency_ratio_at_maximum"].map(|column| table.floats(column).unwrap()[0]);
+    let curve = |x: f64| hill(x, 3.0, 2.0, 0.3) + hill(x, 5.0, 1.5, 0.3) + hill(x, 7.4, 4.0, 0.25);
+    let engine = Curve(|x, _| (hill(x, 3.0, 2.0, 0.3) + hill(x, 5.0, 1.5, 0.3) + hill(x, 7.4, 4.0, 0.25), 0.0, false));
+    let [found, at] = largest(&engine, "[1, 2, 3, 4, 5, 6, 7, 8, 9], refine: 12");
     assert!((at - 7.4).abs() < 0.01, "it is found at {at}");
     assert!((found - curve(7.4)).abs() < 0.01, "it is {found}");
+}
+
+#[test]
+fn no_luck_of_a_single_run_is_the_maximum_and_far_below_it_no_ensemble_is_asked_for() {
+    /// A smooth mean with single runs some per cent beside it.
+    #[derive(Default)]
+    struct Lucky(AtomicU64);
+    impl Evaluate for Lucky {
+        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
+            let mean = Curve(|x, _| (1.0 + hill(x, 4.0, 2.0, 0.7), 0.05, true)).evaluate(it)?;
+            if it.rigour != Rigour::Step {
+                self.0.fetch_add(1, Ordering::Relaxed);
+                return Ok(mean);
+            }
+            let Measured { value, .. } = mean.measured[0];
+            let luck = 0.1 * libm::sin(1e4 * value);
+            Ok(Evaluated { measured: vec![Measured { value: value + luck, numerical: 0.0, spread: 0.0 }], ..mean })
+        }
+    }
+    let engine = Lucky::default();
+    let [found, at] = largest(&engine, "{step: {from: 1, to: 9, step: 0.1}}, refine: 6");
+    assert!((at - 4.0).abs() < 0.1 && (found - 3.0).abs() < 0.02, "{found} at {at}");
+    let looks = engine.0.into_inner();
+    // Twice 81 points in the grid, and refined ones.
+    assert!(looks < 2 * 81, "{looks} looks");
+}
+
+fn hill(x: f64, at: f64, height: f64, width: f64) -> f64 {
+    height / (1.0 + (x - at) * (x - at) / (width * width))
+}
+
+/// The maximum over ω/ωn within a grid, and where it is.
+fn largest(engine: &impl Evaluate, grid: &str) -> [f64; 2] {
+    let refined = "frequency_ratio: {refined: {from: 0.2, to: 7, start: 60 points, tolerance: 1 %}}";
+    let text = RESPONSE
+        .replace(&format!(", {refined}"), "")
+        .replace("run:", &format!("maximise: {{rms_velocity: {{over: frequency_ratio, in: {grid}}}}}\nrun:"))
+        .replace("x: frequency_ratio, y: rms_velocity, by: gap_ratio", "x: gap_ratio, y: rms_velocity");
+    let (_, table) = run(engine, 2, &text, &IgnoreEvents);
+    ["rms_velocity", "frequency_ratio_at_maximum"].map(|column| table.floats(column).unwrap()[0])
 }

@@ -59,9 +59,10 @@ fn a_row_is_a_case_under_a_solver_in_a_variant() {
     let shorter = table.rows_where("variant", "stop_length=0.05");
     assert!((ratio[0] - ratio[shorter[0]] - 0.01).abs() < 1e-12);
     assert_eq!(ratio[2], ratio[shorter[1]]);
-    // The maximum itself is simulated once more, as a result.
+    // The maximum itself is simulated once more, as a result; points that come near it twice.
     let grid_and_rounds = 3 * (5 + 3 * 2 + 1);
-    assert_eq!(engine.simulations.into_inner(), 12 + 2 * 6 + 3 + grid_and_rounds);
+    let simulations = engine.simulations.into_inner() - (12 + 2 * 6 + 3);
+    assert!((grid_and_rounds..2 * grid_and_rounds).contains(&simulations), "{simulations}");
 }
 
 /// A residual of 0 would be read as a balance that closes to the last digit.
