@@ -211,7 +211,7 @@ fn points(input: &CalibrationInput, residuals: &[Option<f64>], best: usize) -> S
 
 fn determined(profile: &Profile, best: usize, search: CalibrationSearch) -> &'static str {
     if profile.is_unread {
-        return "no: no fitted entry depends on it";
+        return "no: no residual depends on it";
     }
     let Some(Some(least)) = profile.residuals.get(best) else { return "no" };
     let rivals = profile.residuals.iter().enumerate().filter(|(place, residual)| {

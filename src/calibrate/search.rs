@@ -61,7 +61,7 @@ impl Trail {
         equal.map(|(places, _)| (places, least)).min_by_key(|(places, _)| moved(places))
     }
 
-    /// True if no set has another residual than those that differ from it in this input alone.
+    /// True if no set has another residual than those that differ from it in this input alone, and some were run to their ends.
     pub(super) fn does_not_depend_on(&self, input: usize) -> bool {
         let mut groups: BTreeMap<Places, Vec<&Residue>> = BTreeMap::new();
         for (places, residual) in &self.residuals {
@@ -73,7 +73,8 @@ impl Trail {
             | (Residue::AtLeast(bound), Residue::Exact(Some(value))) => bound <= value,
             _ => true,
         };
-        groups.values().any(|group| group.len() > 1)
+        let is_exact = |one: &&&Residue| matches!(one, Residue::Exact(Some(_)));
+        groups.values().any(|group| group.iter().filter(is_exact).count() > 1)
             && groups.values().all(|group| group.iter().all(|one| group.iter().all(|other| alike(one, other))))
     }
 }

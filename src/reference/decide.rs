@@ -129,7 +129,12 @@ fn greatest_first(list: &[Extraction], view: &View<'_>) -> Result<Decision, Abse
     let decision = tally.decision()?;
     let common = words::common(list);
     let mut found = common.clone().unwrap_or_default();
-    let shown = listed(&values);
+    let mut shown = listed(&values);
+    for i in 1..shown.len() {
+        if are_equal(&values[i - 1], &values[i]) {
+            shown[i] = shown[i - 1].clone();
+        }
+    }
     for (i, text) in shown.iter().enumerate() {
         if let Some(before) = i.checked_sub(1) {
             found += match values[before].value.total_cmp(&values[i].value) {
@@ -145,10 +150,7 @@ fn greatest_first(list: &[Extraction], view: &View<'_>) -> Result<Decision, Abse
         {
             found += &format!("{what} ");
         }
-        found += match i.checked_sub(1) {
-            Some(before) if are_equal(&values[before], &values[i]) => &shown[before],
-            _ => text,
-        };
+        found += text;
         // Too close for any number of digits.
         if let Some(before) = i.checked_sub(1)
             && shown[before] == *text

@@ -115,8 +115,11 @@ pub fn what_moves(experiments: &[ExperimentView<'_>]) -> String {
         let title = one_line(&view.experiment.title);
         text += &details(&format!("{title}: rows that are not what they settle to"), &rows_off(settling));
     }
-    text + "The kinds of motion are proved by Floquet multipliers and Lyapunov exponents; the settled motion is the one that \
-            the run reaches within ten times its cycles, averaged over one period. [The study in one page](README.md)\n"
+    if total > 0 {
+        text += "The kinds of motion are proved by Floquet multipliers and Lyapunov exponents; the settled motion is the one that \
+                 the run reaches within ten times its cycles, averaged over one period. ";
+    }
+    text + "[The study in one page](README.md)\n"
 }
 
 /// Experiments whose starts were drawn at random, by the motions that attract in each of their cases.

@@ -153,8 +153,8 @@ impl Loaded {
         Self::chosen(texts, &|_| true, &|_| false, &|_| {})
     }
 
-    /// Reads the assumptions, and the experiments whose ids are `wanted`; the cases of some were `tried` before, of the others `on_untried`
-    /// is told before theirs are.
+    /// Reads the assumptions, and the experiments whose ids are `wanted`; the cases of some were `tried` before, for the others `on_untried`
+    /// is called before theirs are.
     #[must_use]
     pub(super) fn chosen(
         texts: &Texts,

@@ -67,7 +67,7 @@ impl Study {
         study.complete()
     }
 
-    /// Reads and plans the experiments whose ids are `wanted`, as if there were no others; `on_untried` is told of each before its cases
+    /// Reads and plans the experiments whose ids are `wanted`, as if there were no others; `on_untried` is called for each before its cases
     /// are tried.
     #[must_use]
     pub fn of(

@@ -109,9 +109,7 @@ fn the_best_of_all_combinations_is_found_and_each_input_has_its_profile() {
     assert_eq!(result.held_out[0].best.verdict, Verdict::Reproduced);
     let page = shotdamp::calibrate::calibration(&read(STOP), &result);
     assert!(
-        page.contains("**55 mm: 0.2")
-            && page.contains("| yes |")
-            && page.contains("| no: no fitted entry depends on it |"),
+        page.contains("**55 mm: 0.2") && page.contains("| yes |") && page.contains("| no: no residual depends on it |"),
         "{page}"
     );
     assert!(page.contains("All 6 combinations of values were tried, each as a single run."), "{page}");
@@ -392,5 +390,5 @@ fn an_input_that_no_fitted_entry_depends_on_keeps_its_value_in_force() {
     assert_eq!((result.places[1], result.profiles[1].is_unread, result.profiles[0].is_unread), (1, true, false));
     let page = shotdamp::calibrate::calibration(&read(&text), &result);
     let row = page.lines().find(|line| line.starts_with("| `plastic`")).unwrap();
-    assert!(row.contains("; **0: ") && row.ends_with("| no: no fitted entry depends on it |"), "{row}");
+    assert!(row.contains("; **0: ") && row.ends_with("| no: no residual depends on it |"), "{row}");
 }

@@ -133,7 +133,9 @@ fn status_names_the_input_that_changed() {
          2 experiments: 1 to simulate, 0 reports to renew, 1 up to date\n"
     );
     assert_eq!((status.code, shotdamp(&desk, &["status", "--exit-code"]).code), (0, 1));
+    let before = files(desk.folder.path());
     let dry = shotdamp(&desk, &["run", "--dry-run", "--jobs", "2"]);
+    assert!(before == files(desk.folder.path()), "it writes nothing");
     assert_eq!(
         dry.out,
         "ch3-stop: 12 of 30 rows to simulate, 12 simulations at most, less than 0.1 s\n\

@@ -539,6 +539,13 @@ fn claims_hold_fail_and_stay_open_as_their_margins_say() {
         assert_eq!(verdict(&claim, &bad), Verdict::Differs, "{claim}: {}", judged(&claim, &bad).found);
         assert_eq!(broken(&claim, &good), Vec::<String>::new(), "{claim}");
     }
+    // One point neither rises nor falls.
+    let one = complete(vec![
+        float("force_ratio", &[1.0]),
+        text("solver", &["event_driven"]),
+        float("velocity_ratio", &[1.0]),
+    ]);
+    assert_eq!(verdict(&format!("claim: {{monotone: {{{line}, direction: increasing}}}}"), &one), Verdict::Missing);
     // A step back that the points' own errors cover cannot be told from none.
     let mut table = lines(&[("event_driven", dented)]);
     table.columns.push(float("velocity_ratio_num", &[0.01; 5]));
