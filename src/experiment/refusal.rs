@@ -13,6 +13,8 @@ use super::yaml::{Node, Value};
 pub(super) struct Places<'t> {
     /// What stands under `scene`.
     pub scene: &'t Node,
+    /// What it leaves to the sweep.
+    pub left_to_sweep: &'t [(Parameter, Span)],
     /// Where a parameter is swept, or where its maximum is looked for.
     pub parameters: BTreeMap<Parameter, Span>,
     /// Where the particles of random starts stand.
@@ -31,8 +33,9 @@ impl Places<'_> {
             let value = keys.iter().find_map(|key| exactly(within, key));
             let is_one = |parameter: Parameter| of_part(parameter) && keys.contains(&word_of(parameter).as_str());
             // Where no value of the scene is left to the sweep, it replaces what is stated.
-            let is_replaced = experiment.swept.iter().any(|&one| case.get(one).is_some() && is_one(one))
-                && !keys.iter().any(|key| is_swept_under(self.scene, key));
+            let is_left = |parameter: Parameter| self.left_to_sweep.iter().any(|(left, _)| *left == parameter);
+            let replaces = |parameter: Parameter| case.get(parameter).is_some() && !is_left(parameter);
+            let is_replaced = experiment.swept.iter().any(|&one| replaces(one) && is_one(one));
             let stated = value.filter(|value| !is_replaced && !is_left_open(value)).map(|value| value.span);
             stated.or_else(|| swept(&is_one)).unwrap_or(value.unwrap_or(within).span)
         };
@@ -60,31 +63,11 @@ impl Places<'_> {
 
 /// The scene leaves the value, or a part of it, to the sweep or to an assumption.
 fn is_left_open(node: &Node) -> bool {
-    any_node(node, &|key, value| {
-        key == "assumed" || value.is_swept() || matches!(value, Value::Scalar(word) if word == "assumed")
-    })
-}
-
-/// A value under this key is left to the sweep.
-fn is_swept_under(node: &Node, wanted: &str) -> bool {
-    let is_swept = |node: &Node| any_node(node, &|_, value| value.is_swept());
     match &node.value {
-        Value::Nothing | Value::Scalar(_) => false,
-        Value::Sequence(items) => items.iter().any(|item| is_swept_under(item, wanted)),
-        Value::Mapping(entries) => entries
-            .iter()
-            .any(|entry| entry.key == wanted && is_swept(&entry.node) || is_swept_under(&entry.node, wanted)),
-    }
-}
-
-/// Some value of a node, with the key that it stands under, is such a one.
-fn any_node(node: &Node, is_one: &impl Fn(&str, &Value) -> bool) -> bool {
-    match &node.value {
-        Value::Sequence(items) => items.iter().any(|item| any_node(item, is_one)),
-        Value::Mapping(entries) => {
-            entries.iter().any(|entry| is_one(&entry.key, &entry.node.value) || any_node(&entry.node, is_one))
-        }
-        scalar => is_one("", scalar),
+        Value::Nothing => false,
+        Value::Scalar(word) => node.value.is_swept() || word == "assumed",
+        Value::Sequence(items) => items.iter().any(is_left_open),
+        Value::Mapping(entries) => entries.iter().any(|entry| entry.key == "assumed" || is_left_open(&entry.node)),
     }
 }
 

@@ -298,9 +298,10 @@ impl<'t> ExperimentReader<'t> {
         if let Some(maximise) = &experiment.maximise {
             places.entry(maximise.over).or_insert(looked_for_at);
         }
-        if let At::Node(scene, _) = at.under("scene") {
+        if let At::Node(node, _) = at.under("scene") {
             let starts = starts.as_ref().map(|read| read.particles_at);
-            checks.scenes(&experiment, &Places { scene, parameters: places, starts });
+            let left_to_sweep = &scene.swept;
+            checks.scenes(&experiment, &Places { scene: node, left_to_sweep, parameters: places, starts });
         }
         checks.sensitivity(run.moved.as_ref(), &experiment, &self.assumptions.sheet);
         Some(experiment)

@@ -54,9 +54,11 @@ fn no_figure_takes_the_name_of_the_drawing_of_the_scene() {
 /// The beam with one thing changed, from where the only mistake is marked to the end of that line.
 fn marked(from: &str, to: &str) -> String {
     assert!(BEAM.contains(from), "{from}");
-    let text = BEAM.replacen(from, to, 1);
-    let read = parse_experiment(&"x".parse().unwrap(), "mine.yaml", &text, &Assumptions::default());
-    let problems = read.unwrap_err();
+    marked_in(&BEAM.replacen(from, to, 1))
+}
+
+fn marked_in(text: &str) -> String {
+    let problems = parse_experiment(&"x".parse().unwrap(), "mine.yaml", text, &Assumptions::default()).unwrap_err();
     assert_eq!(problems.list.len(), 1, "{problems}");
     let place = problems.list[0].place.unwrap();
     text.lines().nth(place.line - 1).unwrap().chars().skip(place.column - 1).collect()
@@ -85,13 +87,8 @@ fn of_a_surface_or_a_stop_the_value_that_is_refused_is_marked_and_no_other_thoug
     let damper = "[{at: 1, mass_ratio: 0.05, particle_share: 0.5, gap_ratio: 50, floor: {rigid: {restitution: 0.6}}}]";
     let sweep = "sweep: {force_ratio: [1, 2]}";
     let marked = |dampers: &str, swept: &str| {
-        let text =
-            BEAM.replacen(damper, dampers, 1).replacen(sweep, &format!("sweep: {{force_ratio: [1, 2]{swept}}}"), 1);
-        let problems =
-            parse_experiment(&"x".parse().unwrap(), "mine.yaml", &text, &Assumptions::default()).unwrap_err();
-        assert_eq!(problems.list.len(), 1, "{problems}");
-        let place = problems.list[0].place.unwrap();
-        text.lines().nth(place.line - 1).unwrap().chars().skip(place.column - 1).collect::<String>()
+        let swept = format!("sweep: {{force_ratio: [1, 2]{swept}}}");
+        marked_in(&BEAM.replacen(damper, dampers, 1).replacen(sweep, &swept, 1))
     };
     let one = "at: 1, mass_ratio: 0.05, particle_share: 0.5";
     // The damping of a floor whose tuning is swept.
