@@ -83,7 +83,8 @@ pub enum Rigour {
     /// A result: audited, at a second accuracy, the whole ensemble where the motion is chaotic.
     #[default]
     Result,
-    /// Under another value of an unstated input: neither audited nor repeated, an ensemble as large as its means need.
+    /// Under another value of an unstated input, or a place of a landscape: neither audited nor repeated, an ensemble as large as its means
+    /// need.
     Variant,
     /// A look at one of several, to choose among them: neither audited nor repeated, ensembles of eight.
     Look,

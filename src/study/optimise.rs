@@ -389,7 +389,7 @@ impl Searches<'_> {
 
     /// Fitness as a landscape shows it; `None` where it cannot be computed.
     fn look(&self, point: &[f64]) -> Option<Measured> {
-        self.fitness.evaluate(point, Rigour::Look).ok()?.measured.get(self.measure).copied()
+        self.fitness.evaluate(point, Rigour::Variant).ok()?.measured.get(self.measure).copied()
     }
 
     /// The best of what was found, improved down the gradient of settled motion; as it is where that motion has none.

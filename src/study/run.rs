@@ -302,7 +302,7 @@ fn order(work: &[(usize, Work<'_>)]) -> Vec<(usize, Units)> {
     order.into_iter().map(|(_, _, index, units)| (index, units)).collect()
 }
 
-/// Does units that may make the same runs.
+/// Does units that may make the same runs. A row whose maximum is looked for makes some of them again itself: looks follow steps.
 fn one_by_one(
     work: &Work<'_>,
     units: &Units,
@@ -311,12 +311,11 @@ fn one_by_one(
     put: impl Fn(usize, Outcome) + Copy,
 ) {
     let all = || units.iter().for_each(|rows| work.unit(rows, evaluate, handler, put));
-    if units.len() > 1 { keeping_runs(all) } else { all() }
+    if units.len() > 1 || work.task.experiment.maximise.is_some() { keeping_runs(all) } else { all() }
 }
 
 /// Rows to be done of a case whose scene is the same, one after the other: an assumption that enters the reference, or the kind of mean,
-/// alone leaves their runs as they are. Where a maximum is looked for, no scene is known before, and all rows of a case go together.
-/// Threads without a case of their own share the points and settings of a row.
+/// alone leaves their runs as they are. Threads without a case of their own share the points and settings of a row.
 fn together(work: &Work<'_>) -> Vec<Units> {
     let Task { experiment, variants, .. } = work.task;
     let scene = |row: usize| {

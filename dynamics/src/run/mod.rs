@@ -17,7 +17,7 @@ use crate::system::HybridSystem;
 /// # Errors
 /// [`EngineError`] with the reason.
 pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
-    repeated::once(system, options, || simulated(system, options))
+    repeated::once(system, options, |options| simulated(system, options))
 }
 
 /// The same of a run that may have so many events and is not needed: if it has more, the simulation goes on without it, and the inner error

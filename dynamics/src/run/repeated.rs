@@ -26,15 +26,19 @@ struct Made {
 }
 
 impl Made {
-    /// Whether a run under these options is part of it: an audit reads a run, and changes nothing in it.
+    /// Whether a run under these options is part of it: an audit, and a look at how it settles, read a run and change nothing in it.
     fn has(&self, options: &Options) -> bool {
-        let audit = self.options.audit;
-        audit >= options.audit && self.options == Options { audit, ..options.clone() }
+        let Options { audit, settling, .. } = self.options;
+        let reads_all = audit >= options.audit && settling >= options.settling;
+        reads_all && self.options == Options { audit, settling, ..options.clone() }
     }
 
     /// What such a run leaves.
     fn read(&self, options: &Options) -> Response {
         let mut response = self.response.clone();
+        if !options.settling {
+            response.settling = None;
+        }
         if !options.audit {
             let Proof { momentum_residual, energy_residual, residual_bound, .. } = Proof::default();
             response.proof = Proof { momentum_residual, energy_residual, residual_bound, ..response.proof };
@@ -63,14 +67,15 @@ pub fn keeping_runs<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// What came of this run, or comes of it now.
+/// What came of this run, or comes of it now. One that is kept says how it settles, too: a step of a search is asked for again, as a look
+/// that compares a neighbour with it.
 pub(crate) fn once(
     system: &HybridSystem,
     options: &Options,
-    run: impl FnOnce() -> Result<Response, EngineError>,
+    run: impl FnOnce(&Options) -> Result<Response, EngineError>,
 ) -> Result<Response, EngineError> {
     if !is_light(options) || KEPT.with_borrow(Option::is_none) {
-        return run();
+        return run(options);
     }
     let key = key(system, options);
     let known = KEPT.with_borrow(|kept| {
@@ -86,13 +91,12 @@ pub(crate) fn once(
         });
     }
     let before = budget::events();
-    let response = run()?;
-    let made = Made {
-        system: system.clone(),
-        options: options.clone(),
-        response: response.clone(),
-        events: budget::events().saturating_sub(before),
-    };
+    // A kicked run is a neighbour itself.
+    let whole = Options { settling: options.settling || options.kick == 0.0, ..options.clone() };
+    let response = run(&whole)?;
+    let events = budget::events().saturating_sub(before);
+    let made = Made { system: system.clone(), options: whole, response, events };
+    let response = made.read(options);
     KEPT.with_borrow_mut(|kept| {
         if let Some(kept) = kept {
             if kept.len() >= MOST {

@@ -16,8 +16,17 @@ fn a_run_that_is_kept_is_as_if_it_were_made_again() {
     let plain = Options { skip: 2, average: 8, ..Options::default() };
     let kicked = Options { kick: 1e-6, ..plain.clone() };
     let audited = Options { audit: true, ..plain.clone() };
-    let asked =
-        [(&one, &plain), (&one, &kicked), (&other, &audited), (&one, &plain), (&one, &audited), (&other, &plain)];
+    let settling = Options { settling: true, ..plain.clone() };
+    let asked = [
+        (&one, &plain),
+        (&one, &kicked),
+        (&other, &audited),
+        (&one, &plain),
+        (&one, &audited),
+        (&other, &plain),
+        (&one, &settling),
+        (&other, &settling),
+    ];
     // In words: what was not asked for is no number, and equals nothing.
     let describe = |outcome: Result<Response, EngineError>| match outcome {
         Ok(response) => format!("{response:?}"),
