@@ -117,8 +117,8 @@ fn indices(colors: &[Color], by_count: &[(Color, usize)], palette: &[Color]) -> 
 }
 
 /// Largest difference of a channel.
-fn distance(a: Color, b: Color) -> u8 {
-    a.into_iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().unwrap_or_default()
+fn distance([r, g, b]: Color, other: Color) -> u8 {
+    r.abs_diff(other[0]).max(g.abs_diff(other[1])).max(b.abs_diff(other[2]))
 }
 
 #[cfg(test)]

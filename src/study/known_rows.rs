@@ -43,9 +43,12 @@ impl KnownRows {
     pub fn of(layout: &Layout, item: &Item) -> Self {
         let experiment = &item.source.experiment;
         let mut known = Self::nothing();
-        let tables = on_disk(layout, item).into_iter().chain(earlier::tables(layout, &experiment.id));
+        let mut tables = on_disk(layout, item).into_iter().chain(earlier::tables(layout, &experiment.id)).peekable();
+        if tables.peek().is_none() {
+            return known;
+        }
         if let RowSource::Basins(_) = experiment.row_source() {
-            tables.into_iter().for_each(|table| known.take_groups(&table));
+            tables.for_each(|table| known.take_groups(&table));
             return known;
         }
         if experiment.is_whole() {
@@ -127,6 +130,9 @@ impl KnownRows {
 
     /// True if some rows of the plan are known and others are not; which points a refined curve will get is not known before.
     pub(super) fn is_part_of(&self, item: &Item) -> bool {
+        if self.is_empty() && self.groups.is_empty() {
+            return false;
+        }
         let wanted = fingerprints(item);
         let known = wanted.iter().filter(|one| self.has(**one) || self.groups.contains_key(one)).count();
         known > 0 && (known < wanted.len() || !item.source.experiment.refined.is_empty())

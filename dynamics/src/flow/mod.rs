@@ -497,17 +497,33 @@ impl Flow {
         self.left(&vec![0.0; 2 * self.order], 0.0, force, drive)
     }
 
+    /// (p, p′) as [`Flow::leave`] has them, without a place to put them.
+    pub(crate) fn left(&self, c: &[f64], t: f64, force: f64, drive: DrivePhase) -> [Vec<f64>; 2] {
+        let mut left = Coordinates::default();
+        self.leave_to(c, t, force, drive, &mut left);
+        [left.p, left.rate]
+    }
+
     widened! {
-        /// (p, p′) as [`Flow::leave`] has them, without a place to put them.
-        pub(crate) fn left | left_wide (&self, c: &[f64], t: f64, force: f64, drive: DrivePhase) -> [Vec<f64>; 2] = left_by_registers
+        /// The same in a place that is used again.
+        pub(crate) fn leave_to | leave_to_wide (&self, c: &[f64], t: f64, force: f64, drive: DrivePhase, to: &mut Coordinates) = leave_to_by_registers
     }
 
     #[inline(always)]
-    fn left_by_registers(&self, c: &[f64], t: f64, force: f64, drive: DrivePhase) -> [Vec<f64>; 2] {
-        let [mut p, mut rate] = [vec![0.0; self.order], vec![0.0; self.order]];
-        self.leave(c, t, force, drive, &mut Vec::new(), [&mut p, &mut rate]);
-        [p, rate]
+    fn leave_to_by_registers(&self, c: &[f64], t: f64, force: f64, drive: DrivePhase, to: &mut Coordinates) {
+        let Coordinates { p, rate, work } = to;
+        p.resize(self.order, 0.0);
+        rate.resize(self.order, 0.0);
+        self.leave(c, t, force, drive, work, [p, rate]);
     }
+}
+
+/// (p, p′), and room to work in.
+#[derive(Debug, Default)]
+pub(crate) struct Coordinates {
+    pub(crate) p: Vec<f64>,
+    pub(crate) rate: Vec<f64>,
+    work: Vec<f64>,
 }
 
 /// Static equilibrium, every particle on its floor or, where its weight alone presses it there, on the floor's stop.

@@ -14,7 +14,7 @@ use crate::arithmetic::quadrature;
 use crate::budget;
 use crate::contact::{Hold, Side};
 use crate::contact_state::bank::Kernels;
-use crate::flow::Flow;
+use crate::flow::{Coordinates, Flow};
 use crate::system::{Contact, DrivePhase, HybridSystem};
 
 /// The physical state at an instant.
@@ -63,6 +63,8 @@ pub(crate) struct Audit {
     loss: f64,
     /// All else; impulses and their work count among its moduli.
     passed: Passed,
+    /// Where the structure is at a node.
+    here: Coordinates,
 }
 
 /// What passed between two instants.
@@ -227,15 +229,16 @@ impl Audit {
     fn node(&mut self, system: &HybridSystem, flow: &Flow, c: &[f64], Node { time, weight }: Node, force: Force) {
         let n = system.mass.order;
         let now = flow.drive_after(force.drive, time);
-        let [p, rate] = flow.left(c, time, force.level, now);
-        let passed = &mut self.passed;
+        let Self { passed, here, .. } = self;
+        flow.leave_to(c, time, force.level, now, here);
+        let Coordinates { p, rate, .. } = here;
         passed.position.iter_mut().zip(&p[..n]).for_each(|(sum, q)| *sum += weight * q);
         passed.dissipated += weight * system.damping.form(&rate[..n], &rate[..n]);
         for (i, &j) in flow.modes.attached.iter().enumerate() {
             passed.dissipated += weight * flow.modes.damping[j] * rate[n + i] * rate[n + i];
         }
         for across in flow.modes.across.iter().filter(|across| across.presses) {
-            let v = dot(&across.row, &rate);
+            let v = dot(&across.row, rate);
             passed.dissipated += weight * across.damping * v * v;
         }
         let force = force.level + now.sine;
@@ -246,7 +249,8 @@ impl Audit {
     fn moved(&mut self, system: &HybridSystem, flow: &Flow, sum: &[f64], level: f64, length: f64) {
         let n = system.mass.order;
         let mean: Vec<f64> = sum.iter().map(|c| c / length).collect();
-        let [p, rate] = flow.left(&mean, 0.0, level, DrivePhase::default());
+        flow.leave_to(&mean, 0.0, level, DrivePhase::default(), &mut self.here);
+        let Coordinates { p, rate, .. } = &self.here;
         self.passed.position.iter_mut().zip(&p[..n]).for_each(|(sum, q)| *sum += length * q);
         self.passed.drive(1.0, level * length, level * length * dot(&system.force_row, &rate[..n]));
     }
