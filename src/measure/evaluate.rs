@@ -3,9 +3,9 @@
 //! A result under events is run three times: as it is, with search windows half as long (the difference is its numerical
 //! uncertainty), and with a kicked start, only as far as that is still beside the run where the run draws near an orbit. If the
 //! kick of a billionth has grown beyond a millionth, the motion is chaotic and no single run is a result: an ensemble of kicked
-//! starts, and the one without a kick, gives mean and spread. Under another value of an unstated input it is as large as its means
-//! need. A search makes one run a step, and what it finds is evaluated as a result afterwards. The fixed step is run once: what its
-//! step does to the numbers is the result that it is there for.
+//! starts, and the one without a kick, gives mean and spread. Under another value of an unstated input, and in a landscape, it is as
+//! large as its means need. A search makes one run a step, and what it finds is evaluated as a result afterwards. The fixed step is
+//! run once: what its step does to the numbers is the result that it is there for.
 //!
 //! Runs may form a chain: each starts where the one before it ended, with its companions beside it; the run without dampers
 //! starts as the scene says.

@@ -69,8 +69,8 @@ pub struct EarlyEnd {
     pub student: f64,
 }
 
-/// Under another value of an unstated input. What such a row is read for is how far it moves a number that is compared within some
-/// percent: one is enough.
+/// Of a [`Rigour::Variant`]. Under another value of an unstated input it is read for how far that moves a number that is compared within
+/// some percent: one is enough.
 pub const ENSEMBLE_OF_A_VARIANT: EnsembleSize = EnsembleSize {
     early: [EarlyEnd { members: 4, student: 3.182 }, EarlyEnd { members: 6, student: 2.571 }],
     most: 8,

@@ -29,7 +29,7 @@ use super::shard::Shard;
 use super::spent::{Meter, Metered, Spent};
 use super::tabulate::Outcome;
 use super::variant::Variant;
-use super::work::{Work, outcome};
+use super::work::{Work, outcome, rigours_of_others};
 use crate::dynamics::{Limit, is_interrupted, keeping_runs};
 use crate::experiment::{Case, Experiment, RowSource};
 use crate::scene::Scene;
@@ -311,7 +311,8 @@ fn one_by_one(
     put: impl Fn(usize, Outcome) + Copy,
 ) {
     let all = || units.iter().for_each(|rows| work.unit(rows, evaluate, handler, put));
-    if units.len() > 1 || work.task.experiment.maximise.is_some() { keeping_runs(all) } else { all() }
+    let looks_follow_steps = rigours_of_others(work.task.experiment).len() > 1;
+    if units.len() > 1 || looks_follow_steps { keeping_runs(all) } else { all() }
 }
 
 /// Rows to be done of a case whose scene is the same, one after the other: an assumption that enters the reference, or the kind of mean,
