@@ -5,6 +5,7 @@ pub(crate) mod complexes;
 pub(crate) mod elementary;
 pub(crate) mod elimination;
 pub(crate) mod exact;
+pub(crate) mod few;
 pub(crate) mod four;
 pub(crate) mod gauss;
 pub(crate) mod lagrange;

@@ -10,6 +10,7 @@
 //! an approach, 0 elsewhere. All principal minors of 1 + S m are positive, so that there is exactly one solution, whatever
 //! the order of the contacts; Murty's least-index pivoting finds it (Oper. Res. 22, 1974).
 
+use crate::arithmetic::few::Few;
 use crate::arithmetic::gauss::eliminate;
 
 /// A rigid contact that is closed at the instant of the collision.
@@ -49,12 +50,12 @@ impl Closed {
 }
 
 /// Solves the collision; `answers` is S, row by row.
-pub(crate) fn collide(closed: &[Closed], answers: &[f64]) -> Vec<Outcome> {
+pub(crate) fn collide(closed: &[Closed], answers: &[f64]) -> Few<Outcome> {
     let count = closed.len();
-    let least: Vec<f64> = closed.iter().map(Closed::least).collect();
+    let least: Few<f64> = closed.iter().map(Closed::least).collect();
     let fastest = closed.iter().fold(0.0_f64, |fastest, contact| fastest.max(contact.speed.abs()));
     let doubt = 1e-15 * fastest;
-    let mut pushes = vec![true; count];
+    let mut pushes = Few::from_elem(true, count);
     let mut impulses = push(closed, answers, &pushes, &least);
     // Finite by its nature; the bound is for speeds that are no numbers.
     for _ in 0..1_usize << count.min(16) {
@@ -77,10 +78,10 @@ pub(crate) fn collide(closed: &[Closed], answers: &[f64]) -> Vec<Outcome> {
 }
 
 /// p where the contacts in `pushes` reach the speeds `wanted` and the others do nothing.
-pub(crate) fn push(closed: &[Closed], answers: &[f64], pushes: &[bool], wanted: &[f64]) -> Vec<f64> {
+pub(crate) fn push(closed: &[Closed], answers: &[f64], pushes: &[bool], wanted: &[f64]) -> Few<f64> {
     let count = closed.len();
-    let active: Vec<usize> = (0..count).filter(|&i| pushes[i]).collect();
-    let mut rows: Vec<Vec<f64>> = active
+    let active: Few<usize> = (0..count).filter(|&i| pushes[i]).collect();
+    let mut rows: Few<Few<f64>> = active
         .iter()
         .map(|&i| {
             let own = |k: usize| if i == k { 1.0 } else { 0.0 };
@@ -88,7 +89,7 @@ pub(crate) fn push(closed: &[Closed], answers: &[f64], pushes: &[bool], wanted: 
             row.chain([wanted[i] - closed[i].speed]).collect()
         })
         .collect();
-    let mut impulses = vec![0.0; count];
+    let mut impulses = Few::from_elem(0.0, count);
     eliminate(&mut rows);
     for (i, row) in active.iter().zip(&rows) {
         impulses[*i] = row[active.len()];
@@ -97,7 +98,7 @@ pub(crate) fn push(closed: &[Closed], answers: &[f64], pushes: &[bool], wanted: 
 }
 
 /// v⁺.
-fn speeds(closed: &[Closed], answers: &[f64], impulses: &[f64]) -> Vec<f64> {
+fn speeds(closed: &[Closed], answers: &[f64], impulses: &[f64]) -> Few<f64> {
     let count = closed.len();
     let after = |i: usize| {
         (0..count)

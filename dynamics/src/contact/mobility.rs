@@ -2,6 +2,8 @@
 //!
 //! It depends on the face alone, so it is computed at the first impact there and kept.
 
+use std::rc::Rc;
+
 use crate::arithmetic::cholesky::Cholesky;
 use crate::contact::Side;
 use crate::error::EngineError;
@@ -19,7 +21,7 @@ struct Mobility {
     particle: usize,
     side: Side,
     /// M⁻¹φ.
-    answer: Vec<f64>,
+    answer: Rc<[f64]>,
 }
 
 impl Mobilities {
@@ -32,13 +34,13 @@ impl Mobilities {
             Some(factor) => factor,
             none => none.insert(Cholesky::new(&system.mass)?),
         };
-        let answer = factor.solve(&side.face(&system.particles[particle]).row);
+        let answer = factor.solve(&side.face(&system.particles[particle]).row).into();
         self.known.push(Mobility { particle, side, answer });
         Ok(self.known.len() - 1)
     }
 
     /// M⁻¹φ.
-    pub(crate) fn answer(&self, index: usize) -> &[f64] {
+    pub(crate) fn answer(&self, index: usize) -> &Rc<[f64]> {
         &self.known[index].answer
     }
 }

@@ -1,6 +1,7 @@
 //! Rigid contacts that are closed at one instant, as the faces of a system: what a collision is made of, and what it gives
 //! the structure. [`crate::contact::collision`] says which of them push.
 
+use crate::arithmetic::few::Few;
 use crate::arithmetic::matrix::dot;
 use crate::contact::Side;
 use crate::contact::collision::{Closed, Outcome};
@@ -48,8 +49,8 @@ impl Touch {
 }
 
 /// S of the closed contacts, row by row.
-pub(crate) fn answers(system: &HybridSystem, mobilities: &Mobilities, touches: &[Touch]) -> Vec<f64> {
-    let mut answers = Vec::with_capacity(touches.len() * touches.len());
+pub(crate) fn answers(system: &HybridSystem, mobilities: &Mobilities, touches: &[Touch]) -> Few<f64> {
+    let mut answers = Few::with_capacity(touches.len() * touches.len());
     for at in touches {
         let row = &at.side.face(&system.particles[at.particle]).row;
         for from in touches {
@@ -63,19 +64,19 @@ pub(crate) fn answers(system: &HybridSystem, mobilities: &Mobilities, touches: &
 /// What the impulses of a collision do to the structure.
 pub(crate) struct Exchange {
     /// Of its velocities.
-    pub(crate) jump: Vec<f64>,
+    pub(crate) jump: Few<f64>,
     /// Energy lost, J.
     pub(crate) loss: f64,
 }
 
 impl Exchange {
     pub(crate) fn new(system: &HybridSystem, mobilities: &Mobilities, touches: &[Touch], outcomes: &[Outcome]) -> Self {
-        let mut jump = vec![0.0; system.mass.order];
+        let mut jump = Few::from_elem(0.0, system.mass.order);
         let mut loss = 0.0;
         for (touch, outcome) in touches.iter().zip(outcomes) {
             let impulse = touch.side.away() * outcome.impulse;
             let answer = mobilities.answer(touch.mobility);
-            jump.iter_mut().zip(answer).for_each(|(jump, answer)| *jump -= impulse * answer);
+            jump.iter_mut().zip(&answer[..]).for_each(|(jump, answer)| *jump -= impulse * answer);
             loss -= 0.5 * outcome.impulse * (touch.closed.speed + outcome.speed);
         }
         Self { jump, loss }

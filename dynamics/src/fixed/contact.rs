@@ -4,6 +4,7 @@ use super::propagator::sides;
 use super::stretch::{HalfCycle, Stretch};
 use super::vector::Vector;
 use super::{Closing, Run};
+use crate::arithmetic::few::Few;
 use crate::arithmetic::matrix::dot;
 use crate::contact::collision::{self, Closed};
 use crate::contact::touch::{self, Exchange, Touch};
@@ -42,7 +43,7 @@ impl<V: Vector> Run<'_, V> {
         Ok(())
     }
 
-    fn observed_velocities(&self) -> Vec<f64> {
+    fn observed_velocities(&self) -> Few<f64> {
         let more = self.watch.more.iter().map(|[_, velocity]| velocity);
         std::iter::once(&self.watch.velocity).chain(more).map(|row| row.dot(&self.motion.state)).collect()
     }
@@ -146,7 +147,7 @@ impl<V: Vector> Run<'_, V> {
         if self.closing.is_empty() {
             return Ok(());
         }
-        let mut touches = Vec::new();
+        let mut touches = Few::new();
         for (j, particle) in self.system.particles.iter().enumerate() {
             let (side, rate, held) = match self.closing.iter().find(|closing| closing.particle == j) {
                 Some(Closing { side, held, .. }) => (*side, self.relative(j, *side).rate, *held),
@@ -156,7 +157,7 @@ impl<V: Vector> Run<'_, V> {
             touches.push(Touch::new(self.system, &mut self.mobilities, j, side, held, rate)?);
         }
         self.closing.clear();
-        let closed: Vec<Closed> = touches.iter().map(|touch| touch.closed).collect();
+        let closed: Few<Closed> = touches.iter().map(|touch| touch.closed).collect();
         let outcomes = collision::collide(&closed, &touch::answers(self.system, &self.mobilities, &touches));
         let Exchange { jump, loss } = Exchange::new(self.system, &self.mobilities, &touches, &outcomes);
         self.kick_structure(&jump);
@@ -216,7 +217,7 @@ impl<V: Vector> Run<'_, V> {
     pub(super) fn impulse(&mut self, impulse: f64) -> Result<(), EngineError> {
         self.seam(-0.5);
         let before = self.audit.is_some().then(|| energy(self.system, &self.audit_state()));
-        let jump: Vec<f64> = self.jump.iter().map(|jump| impulse * jump).collect();
+        let jump: Few<f64> = self.jump.iter().map(|jump| impulse * jump).collect();
         self.kick_structure(&jump);
         let work = before.map(|before| energy(self.system, &self.audit_state()) - before);
         if let (Some(audit), Some(work)) = (&mut self.audit, work) {

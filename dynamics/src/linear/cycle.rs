@@ -3,6 +3,7 @@
 //! Blocks do not mix, so the map is a 2 × 2 matrix and a pair for each of them; n cycles are its n-th power, by squaring.
 //! A harmonic force needs no d: block coordinates are those beside its steady answer, and it is in phase again after a cycle.
 
+use crate::arithmetic::few::Few;
 use crate::arithmetic::matrix::dot;
 use crate::budget;
 use crate::flow::Flow;
@@ -12,30 +13,21 @@ use crate::system::{DrivePhase, HybridSystem, Tick};
 #[derive(Debug, Clone)]
 pub(super) struct Affine {
     /// E, row by row.
-    pub(super) turn: Vec<[f64; 4]>,
+    pub(super) turn: Few<[f64; 4]>,
     /// d.
-    pub(super) shift: Vec<[f64; 2]>,
+    pub(super) shift: Few<[f64; 2]>,
 }
 
 impl Affine {
     /// Nothing moves.
     fn identity(blocks: usize) -> Self {
-        Self { turn: vec![[1.0, 0.0, 0.0, 1.0]; blocks], shift: vec![[0.0; 2]; blocks] }
+        Self { turn: Few::from_elem([1.0, 0.0, 0.0, 1.0], blocks), shift: Few::from_elem([0.0; 2], blocks) }
     }
 
     /// The free flow over a time.
     pub(super) fn flow(flow: &Flow, time: f64) -> Self {
-        let kernels = flow.kernels(time);
-        let columns = [[1.0, 0.0], [0.0, 1.0]].map(|unit: [f64; 2]| {
-            let start: Vec<f64> = unit.into_iter().cycle().take(flow.width()).collect();
-            let mut end = vec![0.0; flow.width()];
-            flow.advance_all(&kernels, &start, DrivePhase::default(), &mut end);
-            end.truncate(2 * flow.own);
-            end
-        });
-        let [x, y] = columns;
-        let turn = x.as_chunks().0.iter().zip(y.as_chunks().0).map(|([a, c], [b, d])| [*a, *b, *c, *d]).collect();
-        Self { turn, shift: vec![[0.0; 2]; flow.own] }
+        let turn = flow.turns(time).collect();
+        Self { turn, shift: Few::from_elem([0.0; 2], flow.own) }
     }
 
     /// This map, and the next one after it.
@@ -183,7 +175,7 @@ pub(super) fn jump(
     impulse: f64,
     [before, after]: [f64; 2],
     answer: &[f64],
-) -> Vec<[f64; 2]> {
+) -> Few<[f64; 2]> {
     let still = DrivePhase::default();
     let [rest, _] = flow.at_rest(before, still);
     let mut rate: Vec<f64> = answer.iter().map(|jump| impulse * jump).collect();
@@ -192,5 +184,5 @@ pub(super) fn jump(
         let face = dot(&system.particles[j].floor.row, answer);
         rate.push(-impulse * face);
     }
-    enter(flow, &rest, &rate, after, still).as_chunks().0.to_vec()
+    enter(flow, &rest, &rate, after, still).as_chunks().0.into()
 }

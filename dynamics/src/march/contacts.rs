@@ -4,6 +4,7 @@
 use super::March;
 use super::effects::Effects;
 use super::half_cycles::Stage;
+use crate::arithmetic::few::Few;
 use crate::arithmetic::matrix::dot;
 use crate::contact::{Change, Crossing, Hold, Relative, Side};
 use crate::error::EngineError;
@@ -143,7 +144,7 @@ impl<E: Effects> March<'_, E> {
 
     /// A particle in flight that is at a face and moves into it has met it: where there is no gap to cross.
     pub(super) fn meet_at_once(&mut self) -> Result<(), EngineError> {
-        let mut arrived = Vec::new();
+        let mut arrived = Few::new();
         for j in 0..self.particles.len() {
             if let Some(side) = self.meets(j) {
                 match side.face(&self.system.particles[j]).law {

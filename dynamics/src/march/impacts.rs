@@ -6,6 +6,7 @@
 use super::March;
 use super::effects::Effects;
 use super::grip::Grip;
+use crate::arithmetic::few::Few;
 use crate::arithmetic::matrix::dot;
 use crate::contact::collision::{self, Closed, Outcome};
 use crate::contact::touch::{self, Exchange, Touch};
@@ -59,10 +60,10 @@ impl<E: Effects> March<'_, E> {
 
     /// A particle meets a rigid face or a stop, and with it every other one that rounding cannot tell apart from it.
     pub(super) fn strike(&mut self, j: usize, side: Side) -> Result<(), EngineError> {
-        let mut arrived = vec![(j, side)];
+        let mut arrived = Few::from_elem((j, side), 1);
         if self.particles.len() > 1 {
             let others = (0..self.particles.len()).filter(|&other| other != j);
-            let tied: Vec<_> = others.filter_map(|other| Some((other, self.arrives(other)?))).collect();
+            let tied: Few<_> = others.filter_map(|other| Some((other, self.arrives(other)?))).collect();
             for &(other, side) in &tied {
                 if let Some(stop) = side.face(&self.system.particles[other]).law.stop() {
                     self.particles[other].gap = -side.away() * stop.length;
@@ -110,7 +111,7 @@ impl<E: Effects> March<'_, E> {
     /// are at a rigid face, pressed ones at its stop.
     pub(super) fn settle(&mut self, arrived: &[(usize, Side)]) -> Result<(), EngineError> {
         self.come_out();
-        let candidates = if E::ALL { self.collide(arrived)? } else { Vec::new() };
+        let candidates = if E::ALL { self.collide(arrived)? } else { Few::new() };
         for j in 0..self.particles.len() {
             // Whose state refers to a rigid face already.
             if !candidates.iter().any(|candidate| candidate.particle == j && !candidate.on_stop) {
@@ -157,8 +158,8 @@ impl<E: Effects> March<'_, E> {
     }
 
     /// The rigid contacts that are closed.
-    pub(super) fn touches(&mut self, arrived: &[(usize, Side)]) -> Result<Vec<Touch>, EngineError> {
-        let mut touches = Vec::new();
+    pub(super) fn touches(&mut self, arrived: &[(usize, Side)]) -> Result<Few<Touch>, EngineError> {
+        let mut touches = Few::new();
         for (j, particle) in self.system.particles.iter().enumerate() {
             let contact = self.contacts[j];
             let here = self.particles[j];
@@ -192,17 +193,17 @@ impl<E: Effects> March<'_, E> {
     }
 
     /// S of the closed contacts, row by row.
-    pub(super) fn answers(&self, touches: &[Touch]) -> Vec<f64> {
+    pub(super) fn answers(&self, touches: &[Touch]) -> Few<f64> {
         touch::answers(self.system, &self.mobilities, touches)
     }
 
     /// The exchange of momentum among all closed rigid contacts. Gives those that may be held.
-    fn collide(&mut self, arrived: &[(usize, Side)]) -> Result<Vec<Candidate>, EngineError> {
+    fn collide(&mut self, arrived: &[(usize, Side)]) -> Result<Few<Candidate>, EngineError> {
         let touches = self.touches(arrived)?;
         if touches.is_empty() {
-            return Ok(Vec::new());
+            return Ok(Few::new());
         }
-        let closed: Vec<Closed> = touches.iter().map(|touch| touch.closed).collect();
+        let closed: Few<Closed> = touches.iter().map(|touch| touch.closed).collect();
         let outcomes = if closed.iter().any(Closed::is_struck) {
             let outcomes = collision::collide(&closed, &self.answers(&touches));
             self.exchange(&touches, &outcomes);
@@ -214,7 +215,7 @@ impl<E: Effects> March<'_, E> {
         } else {
             closed.iter().map(|contact| Outcome { speed: contact.speed, ..Outcome::default() }).collect()
         };
-        let mut candidates = Vec::new();
+        let mut candidates = Few::new();
         for (touch, outcome) in touches.iter().zip(&outcomes) {
             let slow = if self.has_walls() { self.slow(touch) } else { STICKING_SPEED };
             let Touch { particle: j, side, on_stop, held, closed, .. } = *touch;
@@ -276,14 +277,14 @@ impl<E: Effects> March<'_, E> {
     /// pushes solve a problem of the same kind as the impulses of a collision, and are found in the same way: the first that is
     /// wrong is turned round. So the last of n turns once at most, and each one before it twice as often as that behind it
     /// (Murty 1974); what turns more often is nothing but rounding.
-    fn hold(&mut self, candidates: Vec<Candidate>) -> Result<(), EngineError> {
+    fn hold(&mut self, candidates: Few<Candidate>) -> Result<(), EngineError> {
         if candidates.is_empty() {
             return Ok(());
         }
         self.come_out();
-        let mut holds = vec![true; candidates.len()];
-        let mut grips = vec![Grip::default(); candidates.len()];
-        let mut turns = vec![0; candidates.len()];
+        let mut holds = Few::from_elem(true, candidates.len());
+        let mut grips = Few::from_elem(Grip::default(), candidates.len());
+        let mut turns = Few::from_elem(0, candidates.len());
         for candidate in &candidates {
             self.fix(candidate, true);
         }
@@ -372,16 +373,17 @@ impl<E: Effects> March<'_, E> {
     /// What is left to bounce is a geometric series of flights of 2u′/a, each shorter by ε: its time is added, and its last
     /// speed goes to the structure with all that it carries.
     fn end_chatter(&mut self, candidate: &Candidate, grip: Grip) -> Result<(), EngineError> {
-        let touches: Vec<Touch> =
+        let touches: Few<Touch> =
             self.touches(&[])?.into_iter().filter(|touch| touch.held || touch.particle == candidate.particle).collect();
-        let closed: Vec<Closed> = touches.iter().map(|touch| touch.closed).collect();
-        let still = vec![0.0; closed.len()];
-        let pushes = collision::push(&closed, &self.answers(&touches), &vec![true; closed.len()], &still);
+        let closed: Few<Closed> = touches.iter().map(|touch| touch.closed).collect();
+        let still: Few<f64> = Few::from_elem(0.0, closed.len());
+        let all: Few<bool> = Few::from_elem(true, closed.len());
+        let pushes = collision::push(&closed, &self.answers(&touches), &all, &still);
         let outcome = |(contact, p): (&Closed, &f64)| Outcome { impulse: p * contact.mass, speed: 0.0, pushed: true };
-        let outcomes: Vec<Outcome> = closed.iter().zip(&pushes).map(outcome).collect();
+        let outcomes: Few<Outcome> = closed.iter().zip(&pushes).map(outcome).collect();
         self.exchange(&touches, &outcomes);
         // In flight the face no longer carries the particle, so that a is larger than the push per mass that will hold it.
-        let alone: Vec<Closed> = touches
+        let alone: Few<Closed> = touches
             .iter()
             .zip(&closed)
             .map(|(touch, closed)| Closed {
@@ -390,9 +392,8 @@ impl<E: Effects> March<'_, E> {
             })
             .collect();
         let own = touches.iter().position(|touch| touch.particle == candidate.particle);
-        let lightening = own.map_or(1.0, |own| {
-            -1.0 / collision::push(&alone, &self.answers(&touches), &vec![true; alone.len()], &still)[own]
-        });
+        let lightening =
+            own.map_or(1.0, |own| -1.0 / collision::push(&alone, &self.answers(&touches), &all, &still)[own]);
         let series = if candidate.restitution < 1.0 { 1.0 / (1.0 - candidate.restitution) } else { 0.0 };
         let tail = 2.0 * candidate.speed / (grip.push * lightening) * series;
         let speed = candidate.side.away() * candidate.speed;

@@ -21,6 +21,7 @@ mod taped;
 use std::marker::PhantomData;
 use std::rc::Rc;
 
+use crate::arithmetic::few::Few;
 use crate::budget;
 use crate::contact::Relative;
 use crate::contact::mobility::Mobilities;
@@ -301,8 +302,8 @@ impl<'a, E: Effects> March<'a, E> {
     /// The same with its particles in space, as states are compared with each other.
     fn end(&self) -> End {
         let n = self.system.mass.order;
-        let particles: Vec<[f64; 2]> = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
-        End::new([&self.q[..n], &self.rate[..n]], &particles, self.contacts.clone())
+        let particles: Few<[f64; 2]> = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
+        End::new([&self.q[..n], &self.rate[..n]], &particles, &self.contacts)
     }
 
     /// y and y′ of a particle.

@@ -1,7 +1,10 @@
 //! What a run leaves on the tape that its motion is named from; only runs that are asked for it have this code.
 
+use std::rc::Rc;
+
 use super::March;
 use super::effects::Effects;
+use crate::arithmetic::few::Few;
 use crate::arithmetic::matrix::dot;
 use crate::contact::collision::{self, Closed, Outcome};
 use crate::contact::touch::Touch;
@@ -54,7 +57,7 @@ impl<E: Effects> March<'_, E> {
 
     /// An exchange of momentum among rigid contacts.
     pub(super) fn tape_exchange(&mut self, touches: &[Touch], outcomes: &[Outcome]) {
-        let pushes: Vec<bool> = outcomes.iter().map(|outcome| outcome.pushed).collect();
+        let pushes: Few<bool> = outcomes.iter().map(|outcome| outcome.pushed).collect();
         let jump = self.jump_of(touches, &pushes, |touch| touch.closed.is_struck().then_some(touch.closed.restitution));
         let arrived = touches.iter().filter(|touch| !touch.held && touch.closed.is_struck()).count();
         self.tape.jump(jump, arrived);
@@ -69,7 +72,8 @@ impl<E: Effects> March<'_, E> {
         }
         let mut touches = self.touches(&[])?;
         touches.retain(|touch| touch.held);
-        let mut jump = self.jump_of(&touches, &vec![true; touches.len()], |_| None);
+        let all: Few<bool> = Few::from_elem(true, touches.len());
+        let mut jump = self.jump_of(&touches, &all, |_| None);
         jump.holds = true;
         self.tape.jump(jump, 0);
         Ok(())
@@ -79,12 +83,12 @@ impl<E: Effects> March<'_, E> {
     fn jump_of(&self, touches: &[Touch], pushes: &[bool], struck: impl Fn(&Touch) -> Option<f64>) -> Jump {
         let count = touches.len();
         let answers = self.answers(touches);
-        let mut impulses = vec![0.0; count * count];
+        let mut impulses = Few::from_elem(0.0, count * count);
         for k in (0..count).filter(|&k| pushes[k]) {
             let speed = |i: usize| if i == k { 1.0 } else { 0.0 };
-            let moved: Vec<Closed> =
+            let moved: Few<Closed> =
                 touches.iter().enumerate().map(|(i, touch)| Closed { speed: speed(i), ..touch.closed }).collect();
-            let wanted: Vec<f64> =
+            let wanted: Few<f64> =
                 touches.iter().enumerate().map(|(i, touch)| -struck(touch).unwrap_or(0.0) * speed(i)).collect();
             for (i, impulse) in collision::push(&moved, &answers, pushes, &wanted).into_iter().enumerate() {
                 impulses[i * count + k] = impulse;
@@ -93,7 +97,7 @@ impl<E: Effects> March<'_, E> {
         let kick = |(touch, pushes): (&Touch, &bool)| Kick {
             particle: touch.particle,
             side: touch.side,
-            answer: self.mobilities.answer(touch.mobility).to_vec(),
+            answer: Rc::clone(self.mobilities.answer(touch.mobility)),
             restitution: struck(touch).filter(|_| *pushes),
         };
         Jump { kicks: touches.iter().zip(pushes).map(kick).collect(), impulses, holds: false }

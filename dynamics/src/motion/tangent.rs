@@ -6,6 +6,7 @@
 use std::rc::Rc;
 
 use super::tape::{At, Crossing, Cycle, Jump, Step};
+use crate::arithmetic::few::Few;
 use crate::arithmetic::matrix::dot;
 use crate::arithmetic::wide::widened;
 use crate::contact::Side;
@@ -140,12 +141,12 @@ impl<'a> Tangent<'a> {
         let speed = |rates: &[f64], particle: usize, side: Side| {
             side.away() * (rates[n + particle] - dot(row(particle, side), &rates[..n]))
         };
-        let speeds: Vec<f64> = jump.kicks.iter().map(|kick| speed(rates, kick.particle, kick.side)).collect();
+        let speeds: Few<f64> = jump.kicks.iter().map(|kick| speed(rates, kick.particle, kick.side)).collect();
         for (kick, by) in jump.kicks.iter().zip(jump.impulses.chunks_exact(speeds.len().max(1))) {
             let push = kick.side.away() * dot(by, &speeds);
             rates[n + kick.particle] += push;
             let impulse = push * self.system.particles[kick.particle].mass;
-            rates[..n].iter_mut().zip(&kick.answer).for_each(|(rate, answer)| *rate -= impulse * answer);
+            rates[..n].iter_mut().zip(&kick.answer[..]).for_each(|(rate, answer)| *rate -= impulse * answer);
         }
         if jump.holds {
             for kick in &jump.kicks {

@@ -4,6 +4,7 @@
 use std::collections::VecDeque;
 use std::rc::Rc;
 
+use crate::arithmetic::few::Few;
 use crate::contact::Side;
 use crate::flow::Flow;
 use crate::system::{Contact, EventKind};
@@ -85,7 +86,7 @@ pub(super) struct At<'a> {
 pub(crate) struct Jump {
     pub(crate) kicks: Vec<Kick>,
     /// Impulses per particle mass, by the speeds along the normals, row by row.
-    pub(crate) impulses: Vec<f64>,
+    pub(crate) impulses: Few<f64>,
     /// The faces hold their particles from now on.
     pub(crate) holds: bool,
 }
@@ -95,7 +96,7 @@ pub(crate) struct Kick {
     pub(crate) particle: usize,
     pub(crate) side: Side,
     /// M⁻¹φ.
-    pub(crate) answer: Vec<f64>,
+    pub(crate) answer: Rc<[f64]>,
     /// Restitution of a contact that is struck.
     pub(crate) restitution: Option<f64>,
 }
@@ -104,16 +105,16 @@ pub(crate) struct Kick {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct End {
     /// q, y, q′, y′.
-    pub(crate) state: Vec<f64>,
-    pub(crate) contacts: Vec<Contact>,
+    pub(crate) state: Few<f64>,
+    pub(crate) contacts: Few<Contact>,
 }
 
 impl End {
     /// Of a structure at q, q′ with its particles at y, y′.
-    pub(crate) fn new([q, rate]: [&[f64]; 2], particles: &[[f64; 2]], contacts: Vec<Contact>) -> Self {
+    pub(crate) fn new([q, rate]: [&[f64]; 2], particles: &[[f64; 2]], contacts: &[Contact]) -> Self {
         let of = |which: usize| particles.iter().map(move |at| at[which]);
         let state = q.iter().copied().chain(of(0)).chain(rate.iter().copied()).chain(of(1)).collect();
-        Self { state, contacts }
+        Self { state, contacts: contacts.into() }
     }
 }
 
@@ -153,16 +154,22 @@ impl Tape {
 
     /// A cycle begins.
     pub(crate) fn begin_cycle(&mut self) {
-        // About as long as the last one.
-        let (steps, numbers) = self.cycles.back().map_or((0, 0), |last| (last.steps.len(), last.numbers.len()));
-        if self.cycles.len() >= self.kept.max(1) {
-            self.cycles.pop_front();
-        }
-        self.cycles.push_back(Cycle {
-            steps: Vec::with_capacity(steps),
-            numbers: Vec::with_capacity(numbers),
-            ..Cycle::default()
-        });
+        // In the room of the one that is forgotten, or about as long as the last one.
+        let is_full = self.cycles.len() >= self.kept.max(1);
+        let room = if is_full { self.cycles.pop_front() } else { None };
+        let (steps, numbers) = room.map_or_else(
+            || {
+                self.cycles.back().map_or_else(Default::default, |last| {
+                    (Vec::with_capacity(last.steps.len()), Vec::with_capacity(last.numbers.len()))
+                })
+            },
+            |Cycle { mut steps, mut numbers, .. }| {
+                steps.clear();
+                numbers.clear();
+                (steps, numbers)
+            },
+        );
+        self.cycles.push_back(Cycle { steps, numbers, ..Cycle::default() });
         // Jumps that put the start right belong to no cycle.
         self.jumps.clear();
     }

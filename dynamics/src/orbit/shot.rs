@@ -7,6 +7,7 @@ use nalgebra::DMatrix;
 
 use super::{Orbit, OrbitError};
 use crate::arithmetic::elimination;
+use crate::arithmetic::few::Few;
 use crate::arithmetic::matrix::{dot, length};
 use crate::budget;
 use crate::contact::Relative;
@@ -392,6 +393,6 @@ pub(super) fn start_at(system: &HybridSystem, at: &End) -> StartState {
 /// The same state at rest in space: absolute places and rates.
 pub(super) fn absolute(system: &HybridSystem, start: &StartState) -> Option<End> {
     let StartState::Given { q, rate, particles } = start else { return None };
-    let contacts = particles.iter().map(|(contact, ..)| *contact).collect();
-    Some(End::new([q, rate], &start.absolute(system)?, contacts))
+    let contacts: Few<Contact> = particles.iter().map(|(contact, ..)| *contact).collect();
+    Some(End::new([q, rate], &start.absolute(system)?, &contacts))
 }
