@@ -6,6 +6,8 @@
 
 use std::borrow::Cow;
 
+mod case;
+mod certainty;
 mod contact;
 mod each_cycle;
 mod elasticity;
@@ -29,7 +31,7 @@ mod trial;
 mod undefined;
 
 pub use ending::{Ending, FromStarts};
-pub use evaluate::{Link, Prepared, Request, evaluate, rounded};
+pub use evaluate::{Prepared, evaluate, rounded};
 pub use kept::{
     PROOF, ProofColumn, ProofOf, column_of_damper, energy_columns, of_another_damper, shape_columns, trace_columns,
     unit_of_list,
@@ -37,7 +39,8 @@ pub use kept::{
 pub use measures::{Facts, Measure, ReadOff, Runs, Under, column_words};
 pub use orbit::measured_orbit;
 pub use request::{
-    CycleSpec, CycleValue, EnergySpec, NamedRows, Settings, ShapeOf, ShapeSpec, SolverChoice, Tolerance, TraceSpec,
+    CycleSpec, CycleValue, EnergySpec, Link, NamedRows, Request, Settings, ShapeOf, ShapeSpec, SolverChoice, Tolerance,
+    TraceSpec,
 };
 pub use subject::{Comparison, Needs, Subject};
 pub use trial::Trial;

@@ -6,7 +6,7 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::evaluate::{Request, solve};
+use super::Request;
 use super::later::settled_later;
 use super::{EvaluateError, Measure, Settings, SolverChoice, Subject};
 use crate::dynamics::{Options, Response, Until};
@@ -78,8 +78,8 @@ impl References {
 impl Question {
     fn answer(&self) -> Result<References, EvaluateError> {
         let (system, plain) = (compile(&self.bare)?, &self.plain);
-        let of_cycles = Some(solve(&system, plain, self.solver)?);
-        let settles = || solve(&system, &Options { until: Until::Settled, ..plain.clone() }, self.solver);
+        let of_cycles = Some(self.solver.solve(&system, plain)?);
+        let settles = || self.solver.solve(&system, &Options { until: Until::Settled, ..plain.clone() });
         let settled = if self.settled { Some(settles()?).filter(|run| run.settled.is_some()) } else { None };
         let settled_later = if self.settled_later { settled_later(&system, plain)? } else { None };
         Ok(References { of_cycles, may_settle: settled.is_some(), settled, settled_later })

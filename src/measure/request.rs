@@ -1,9 +1,10 @@
-//! What is asked of a run: solver, window, and which histories to keep with each row.
+//! What is asked of a case: measures, solver, window, and which histories to keep with each row.
 
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::Until;
-use crate::scene::Design;
+use super::{Measure, Needs, Rigour};
+use crate::dynamics::{EngineError, HybridSystem, Options, Response, StartState, Until, event_driven, fixed_step};
+use crate::scene::{Design, Scene};
 
 /// Which solver.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -26,6 +27,89 @@ impl SolverChoice {
             Self::EventDriven => "event_driven".into(),
             Self::FixedStep { time_step } => format!("fixed_step_{time_step:e}s"),
         }
+    }
+
+    /// Runs a system by it.
+    pub(super) fn solve(self, system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
+        match self {
+            Self::EventDriven => event_driven(system, options),
+            Self::FixedStep { time_step } => fixed_step(system, options, time_step),
+        }
+    }
+}
+
+/// Whether a run is one of a chain: each starts where the one before it ended, with its companions beside it; the run without dampers
+/// starts as the scene says.
+#[derive(Debug, Clone, Copy, Default)]
+pub enum Link<'a> {
+    /// It is not: it starts as the scene says, and nobody asks where it ends.
+    #[default]
+    None,
+    /// The first of a chain: it starts as the scene says.
+    First,
+    /// It starts where another ended.
+    After(&'a StartState),
+}
+
+/// What is asked of a case.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Request<'a> {
+    /// What to measure.
+    pub measures: &'a [Measure],
+    /// Time history to keep.
+    pub trace: Option<&'a TraceSpec>,
+    /// Kinetic energies to keep.
+    pub energies: Option<&'a EnergySpec>,
+    /// Shape to keep.
+    pub shape: Option<&'a ShapeSpec>,
+    /// Value to keep of each cycle.
+    pub each_cycle: Option<&'a CycleSpec>,
+    /// How uncertain design parameters are.
+    pub tolerances: &'a [Tolerance],
+    /// What the numbers have to be worth.
+    pub rigour: Rigour,
+    /// The place of the run in a chain.
+    pub link: Link<'a>,
+}
+
+impl Request<'_> {
+    pub(super) fn any(&self, test: impl Fn(Measure) -> bool) -> bool {
+        self.measures.iter().any(|measure| test(*measure))
+    }
+
+    pub(super) fn deflection(&self) -> Option<&ShapeSpec> {
+        self.shape.filter(|shape| shape.of == ShapeOf::Deflection)
+    }
+
+    /// Something is asked for that only a run can tell.
+    pub(super) fn needs_run(&self) -> bool {
+        self.any(|measure| !measure.is_modal())
+            || self.trace.is_some()
+            || self.energies.is_some()
+            || self.deflection().is_some()
+            || self.each_cycle.is_some()
+            || !matches!(self.link, Link::None)
+    }
+
+    /// A run of a scene without an audit and without a history.
+    pub(super) fn options(&self, scene: &Scene, settings: &Settings) -> Options {
+        let of_cycle = |ends: bool| self.each_cycle.is_some_and(|each| each.of.is_of_ends() == ends);
+        Options {
+            start: scene.start_state(),
+            skip: settings.skip,
+            average: settings.average,
+            displacement: self.any(Measure::needs_displacement) || self.deflection().is_some(),
+            extremes: self.any(Measure::needs_extremes),
+            record_events: if self.any(Measure::needs_events) || of_cycle(false) { usize::MAX } else { 0 },
+            cycle_rates: self.energies.is_some() || self.any(Measure::needs_energies) || of_cycle(true),
+            ..Options::default()
+        }
+    }
+
+    /// What it takes of a subject.
+    #[must_use]
+    pub fn needs(&self) -> Needs {
+        Needs::of(self.measures, self.energies.is_some())
     }
 }
 

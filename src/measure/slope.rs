@@ -4,9 +4,9 @@
 //! itself, the velocity ratio v₀/v minus it, as v₀ is that of the structure without dampers.
 
 use super::elasticity;
-use super::evaluate::{Prepared, Request};
 use super::later::orbit_of;
 use super::{EvaluateError, Measure, Rigour};
+use super::{Prepared, Request};
 use crate::optimise::Slope;
 
 impl Prepared<'_> {

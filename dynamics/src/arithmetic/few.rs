@@ -1,4 +1,4 @@
-//! Lists that are short as a rule: the contacts of one instant, the blocks of one mass with its damper.
+//! Lists that are short as a rule: the contacts of one instant, blocks and state of one mass with its damper.
 
 use smallvec::SmallVec;
 

@@ -437,14 +437,14 @@ impl Flow {
         }
     }
 
-    /// What a time makes of the coordinates of each block of its own, row by row.
-    pub(crate) fn turns(&self, time: f64) -> impl Iterator<Item = [f64; 4]> {
+    /// The matrix that a time moves the coordinates of each block of its own by, row by row.
+    pub(crate) fn matrices_after(&self, time: f64) -> impl Iterator<Item = [f64; 4]> {
         let unit = |place| std::array::from_fn(|i| if i % 2 == place { 1.0 } else { 0.0 });
-        let several = move |(propagator, kernels): (&Propagator, Kernels)| {
+        let matrices = move |(propagator, kernels): (&Propagator, Kernels)| {
             let [x, y] = [0, 1].map(|place| propagator.advance(&kernels, &unit(place)));
             std::array::from_fn::<_, WIDTH, _>(|k| [x[2 * k], y[2 * k], x[2 * k + 1], y[2 * k + 1]])
         };
-        self.propagators.iter().zip(self.kernels(time)).flat_map(several).take(self.own)
+        self.propagators.iter().zip(self.kernels(time)).flat_map(matrices).take(self.own)
     }
 
     /// So short a time that radius·t of every block, and so of the fastest, is below `turn`.

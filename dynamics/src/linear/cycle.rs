@@ -26,7 +26,7 @@ impl Affine {
 
     /// The free flow over a time.
     pub(super) fn flow(flow: &Flow, time: f64) -> Self {
-        let turn = flow.turns(time).collect();
+        let turn = flow.matrices_after(time).collect();
         Self { turn, shift: Few::from_elem([0.0; 2], flow.own) }
     }
 

@@ -113,8 +113,10 @@ impl End {
     /// Of a structure at q, q′ with its particles at y, y′.
     pub(crate) fn new([q, rate]: [&[f64]; 2], particles: &[[f64; 2]], contacts: &[Contact]) -> Self {
         let of = |which: usize| particles.iter().map(move |at| at[which]);
-        let state = q.iter().copied().chain(of(0)).chain(rate.iter().copied()).chain(of(1)).collect();
-        Self { state, contacts: contacts.into() }
+        // No more room than it takes: a run keeps those of all its cycles.
+        let mut state = Few::with_capacity(2 * (q.len() + particles.len()));
+        state.extend(q.iter().copied().chain(of(0)).chain(rate.iter().copied()).chain(of(1)));
+        Self { state, contacts: Few::from_slice(contacts) }
     }
 }
 

@@ -1,0 +1,191 @@
+//! One case: the runs that it takes, and all that is read off one of them.
+//!
+//! Where runs are to settle, all of a case are made so; if one of them does not, the case is evaluated as if it had not been asked.
+
+use super::certainty::OwnRun;
+use super::each_cycle;
+use super::energy::Energies;
+use super::history::History;
+use super::kept;
+use super::later::{Later, settled_later};
+use super::reading::Reading;
+use super::references::References;
+use super::shape::{self, Shape};
+use super::{EvaluateError, Evaluated, Measure, Measured, Rigour, Subject, TraceColumn};
+use crate::dynamics::{Averaged, EngineError, HybridSystem, MotionKind, Options, Proof, Response, StartState, Until};
+use crate::measure::{Link, NamedRows, Request, Settings, ShapeOf, SolverChoice};
+use crate::scene::Scene;
+
+/// A case while it is evaluated.
+pub(super) struct Case<'a> {
+    pub(super) subject: &'a Subject,
+    pub(super) settings: &'a Settings,
+    pub(super) request: &'a Request<'a>,
+    pub(super) scene: &'a Scene,
+}
+
+/// What was read off a run.
+pub(super) struct Read {
+    pub(super) values: Vec<f64>,
+    pub(super) lists: Vec<TraceColumn>,
+}
+
+impl Case<'_> {
+    /// Runs the system as often as it takes.
+    pub(super) fn run(
+        &self,
+        system: &HybridSystem,
+        references: &References,
+        solver: SolverChoice,
+    ) -> Result<Evaluated, EvaluateError> {
+        // A run without an audit and without a history.
+        let mut plain = self.request.options(self.scene, self.settings);
+        if let Link::After(state) = self.request.link {
+            plain.start = state.carried_to(system).ok_or(EvaluateError::NotCarried)?;
+        }
+        if references.may_settle {
+            let settles = Options { until: Until::Settled, ..plain.clone() };
+            if let Some(evaluated) = self.run_under(system, references, solver, &settles)? {
+                return Ok(evaluated);
+            }
+        }
+        let evaluated = self.run_under(system, references, solver, &plain)?;
+        Ok(evaluated.unwrap_or_else(|| unreachable!("only a run that is to settle can fail to")))
+    }
+
+    /// The same under `plain` options. `None` where runs are to settle and one does not.
+    fn run_under(
+        &self,
+        system: &HybridSystem,
+        references: &References,
+        solver: SolverChoice,
+        plain: &Options,
+    ) -> Result<Option<Evaluated>, EvaluateError> {
+        match OwnRun::of(self, system, references, solver, plain)? {
+            Some(run) => run.evaluated(),
+            None => Ok(None),
+        }
+    }
+
+    /// The motion is to be named. A number of the motion that a run settles to needs to know whether there is one.
+    pub(super) fn is_named(&self) -> bool {
+        let Request { rigour, .. } = *self.request;
+        let of_row = rigour == Rigour::Result || self.settings.named == NamedRows::All;
+        self.request.any(Measure::needs_motion) && (of_row || self.request.any(Measure::needs_settled))
+    }
+
+    /// Natural frequencies and mode shapes.
+    pub(super) fn without_run(&self) -> Result<Evaluated, EvaluateError> {
+        let shape = self.mode_shape()?;
+        let reading = self.reading(None, None, shape.as_ref().map(|shape| shape.mac));
+        let exact = |value: f64| Measured { value, numerical: 4.0 * f64::EPSILON * value.abs(), spread: 0.0 };
+        let measured = self.request.measures.iter().map(|measure| reading.read(*measure).map(exact));
+        Ok(Evaluated {
+            measured: measured.collect::<Result<_, _>>()?,
+            proof: Proof::linear(),
+            chaotic: false,
+            unknown: None,
+            members: 0,
+            motion: None,
+            trace: shape.map(|shape| shape.columns).unwrap_or_default(),
+            end: None,
+        })
+    }
+
+    fn mode_shape(&self) -> Result<Option<Shape>, EvaluateError> {
+        let wanted = self.request.shape.filter(|shape| shape.of == ShapeOf::Mode);
+        let number = self.subject.mode as usize;
+        Ok(wanted.map(|spec| shape::of_mode(self.scene, spec, number)).transpose()?)
+    }
+
+    fn reading<'r>(
+        &'r self,
+        response: Option<&'r Response>,
+        undamped: Option<&'r Response>,
+        mac: Option<f64>,
+    ) -> Reading<'r> {
+        Reading {
+            scene: self.scene,
+            mode: self.subject.mode,
+            response,
+            undamped,
+            history: None,
+            energies: None,
+            skip: self.settings.skip,
+            average: self.settings.average,
+            mac,
+        }
+    }
+
+    /// The motion that the run goes on to, where a measure is read off it.
+    pub(super) fn later<'c>(
+        &'c self,
+        system: &'c HybridSystem,
+        references: &'c References,
+        plain: &Options,
+        run: &Response,
+    ) -> Result<Later<'c>, EngineError> {
+        let kind = run.motion.as_ref().map(|motion| motion.kind);
+        let never_settles = matches!(kind, Some(MotionKind::QuasiPeriodic | MotionKind::Chaotic));
+        let undamped = references.settled_later.as_ref();
+        let is_read = undamped.is_some() || self.request.any(Measure::needs_neighbours);
+        let own = if is_read && !never_settles { settled_later(system, plain)? } else { None };
+        Ok(Later { subject: self.subject, system, own, undamped })
+    }
+
+    /// All measures, and the lists, of a run from `start`; of a run of an ensemble (not `whole`) only what is averaged.
+    pub(super) fn read(
+        &self,
+        response: &Response,
+        undamped: Option<&Response>,
+        start: &StartState,
+        whole: bool,
+    ) -> Result<Read, EvaluateError> {
+        let request = self.request;
+        let wants_energies = request.energies.is_some() || request.any(Measure::needs_energies);
+        let energies = match undamped {
+            Some(clean) if wants_energies => {
+                let bare = self.subject.undamped.as_ref().map_or(StartState::StaticEquilibrium, Scene::start_state);
+                let starts = [start, &bare];
+                Some(Energies::of(self.scene, [response, clean], starts, self.subject.comparison, self.settings))
+            }
+            _ => None,
+        };
+        let shape = match request.deflection() {
+            _ if !whole => None,
+            Some(spec) => Some(shape::of_deflection(self.scene, response, spec, self.subject.mode as usize)),
+            None => self.mode_shape()?,
+        };
+        let history = request.trace.filter(|_| whole).map(|trace| {
+            let cycles = u64::from(trace.from_cycle)..u64::from(trace.to_cycle);
+            History { response, scene: self.scene, cycles }
+        });
+        let mac = shape.as_ref().map(|shape| shape.mac);
+        let mut reading = self.reading(Some(response), undamped, mac);
+        reading.history = history;
+        reading.energies = energies.as_ref();
+        let value = |measure: &Measure| {
+            if !whole && measure.is_of_own_run() { Ok(f64::NAN) } else { reading.read(*measure) }
+        };
+        let values = request.measures.iter().map(value).collect::<Result<Vec<_>, _>>()?;
+        let mut lists = Vec::new();
+        if whole {
+            let trace = |it: &History<'_>| kept::of_trace(&it.response.trace, it.scene.g());
+            lists.extend(reading.history.iter().flat_map(trace));
+            if let (Some(energies), Some(spec)) = (&energies, request.energies) {
+                lists.extend(energies.columns(spec));
+            }
+            lists.extend(shape.into_iter().flat_map(|shape| shape.columns));
+            if let Some(each) = request.each_cycle {
+                let given = Averaged { first: u64::from(self.settings.skip), cycles: u64::from(self.settings.average) };
+                let averaged = response.settled.unwrap_or(given);
+                lists.push(each_cycle::column(*each, self.scene, response, averaged.first..averaged.end()));
+            }
+        }
+        Ok(Read { values, lists })
+    }
+
+    pub(super) fn rms_velocity(&self, response: &Response) -> f64 {
+        self.reading(None, None, None).rms_velocity(response)
+    }
+}
