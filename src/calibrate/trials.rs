@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use super::rows::Wanted;
 use super::set::Set;
 use crate::experiment::{Experiment, GapWord};
-use crate::measure::{Evaluated, Measure, Rigour, SolverChoice};
+use crate::measure::{Evaluated, Measure, Request, Rigour, SolverChoice};
 use crate::optimise::Slope;
 use crate::reference::Entry;
 use crate::study::{
@@ -173,8 +173,9 @@ impl<E> Substituted<'_, E> {
     fn simulation<'s>(&self, it: &Simulation<'s>) -> Simulation<'s> {
         let solver = if it.solver == SolverChoice::EventDriven { self.solver } else { it.solver };
         // The steps of a maximum ask for ensembles themselves.
-        let rigour = if it.rigour == Rigour::Step { it.rigour } else { self.worth.rigour(it.rigour) };
-        Simulation { solver, rigour, ..*it }
+        let asked = it.request.rigour;
+        let rigour = if asked == Rigour::Step { asked } else { self.worth.rigour(asked) };
+        Simulation { solver, request: Request { rigour, ..it.request }, ..*it }
     }
 }
 

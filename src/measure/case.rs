@@ -2,7 +2,7 @@
 //!
 //! Where runs are to settle, all of a case are made so; if one of them does not, the case is evaluated as if it had not been asked.
 
-use super::certainty::OwnRun;
+use super::certainty::{OwnRun, rounding};
 use super::each_cycle;
 use super::energy::Energies;
 use super::history::History;
@@ -78,7 +78,7 @@ impl Case<'_> {
     pub(super) fn without_run(&self) -> Result<Evaluated, EvaluateError> {
         let shape = self.mode_shape()?;
         let reading = self.reading(None, None, shape.as_ref().map(|shape| shape.mac));
-        let exact = |value: f64| Measured { value, numerical: 4.0 * f64::EPSILON * value.abs(), spread: 0.0 };
+        let exact = |value: f64| Measured { value, numerical: rounding(value), spread: 0.0 };
         let measured = self.request.measures.iter().map(|measure| reading.read(*measure).map(exact));
         Ok(Evaluated {
             measured: measured.collect::<Result<_, _>>()?,

@@ -136,7 +136,7 @@ impl<'a> OwnRun<'a> {
 
     /// The rounding errors of its numbers.
     fn roundings(&self) -> Vec<f64> {
-        self.read.values.iter().map(|value| 4.0 * f64::EPSILON * value.abs()).collect()
+        self.read.values.iter().copied().map(rounding).collect()
     }
 
     /// The errors that measures state of themselves.
@@ -184,7 +184,7 @@ impl<'a> OwnRun<'a> {
         // A number of other runs is read once, as exact as those settle.
         let numerical = pairs.enumerate().map(|(place, ((a, b), own))| {
             let differs = if self.settled_ratio == Some(place) { CLOSED_FORM * a.abs() } else { (a - b).abs() };
-            let least = (4.0 * f64::EPSILON * a.abs()).max(own);
+            let least = rounding(*a).max(own);
             // A number that is none differs by none.
             if second.is_err() && differs.is_nan() { f64::NAN } else { differs.max(least) }
         });
@@ -243,12 +243,17 @@ impl<'a> OwnRun<'a> {
         let measured = all.each().zip(own).map(|((measure, sum), ((own, error), known))| match known {
             Some(known) => *known,
             None if measure.is_of_own_run() => {
-                Measured { value: *own, numerical: (4.0 * f64::EPSILON * own.abs()).max(error), spread: 0.0 }
+                Measured { value: *own, numerical: rounding(*own).max(error), spread: 0.0 }
             }
             None => Measured { value: sum.mean, numerical: sum.standard_error(), spread: sum.deviation() },
         });
         Ok(Some(self.of_members(count, measured.collect(), true)))
     }
+}
+
+/// What rounding leaves of a number.
+pub(super) fn rounding(value: f64) -> f64 {
+    4.0 * f64::EPSILON * value.abs()
 }
 
 /// A run was to settle under these options and has not.

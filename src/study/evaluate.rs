@@ -4,10 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::row_failure::RowFailure;
 use crate::experiment::{Assumptions, Experiment, GapWord, Recipe};
-use crate::measure::{
-    self, CycleSpec, EnergySpec, Evaluated, Link, Measure, Needs, Prepared, Request, Rigour, Settings, ShapeSpec,
-    SolverChoice, Tolerance, TraceSpec,
-};
+use crate::measure::{self, Evaluated, Measure, Needs, Prepared, Request, Rigour, Settings, SolverChoice};
 use crate::optimise::Slope;
 
 /// One simulation to be made.
@@ -21,22 +18,8 @@ pub struct Simulation<'a> {
     pub solver: SolverChoice,
     /// How long.
     pub settings: Settings,
-    /// What to measure.
-    pub measures: &'a [Measure],
-    /// Time history to keep.
-    pub trace: Option<&'a TraceSpec>,
-    /// Kinetic energies to keep.
-    pub energies: Option<&'a EnergySpec>,
-    /// Shape to keep.
-    pub shape: Option<&'a ShapeSpec>,
-    /// Value to keep of each cycle.
-    pub each_cycle: Option<&'a CycleSpec>,
-    /// How uncertain design parameters are.
-    pub tolerances: &'a [Tolerance],
-    /// The place of the row in a chain of rows.
-    pub link: Link<'a>,
-    /// Whether it is a result, or a look on the way to one.
-    pub rigour: Rigour,
+    /// What is asked of it.
+    pub request: Request<'a>,
 }
 
 impl<'a> Simulation<'a> {
@@ -53,14 +36,7 @@ impl<'a> Simulation<'a> {
             assumptions,
             solver: experiment.solvers.first().copied().unwrap_or(SolverChoice::EventDriven),
             settings: experiment.settings_under(assumptions),
-            measures,
-            trace: None,
-            energies: None,
-            shape: None,
-            each_cycle: None,
-            tolerances: &[],
-            link: Link::None,
-            rigour: Rigour::Step,
+            request: Request { measures, rigour: Rigour::Step, ..Request::default() },
         }
     }
 }
@@ -112,7 +88,8 @@ impl<E: Evaluate> Array for Unprepared<'_, E> {
     fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, RowFailure> {
         let mut recipe = self.simulation.recipe.clone();
         recipe.set_gaps(self.word, gaps)?;
-        self.evaluate.evaluate(&Simulation { recipe: &recipe, rigour, ..self.simulation })
+        let request = Request { rigour, ..self.simulation.request };
+        self.evaluate.evaluate(&Simulation { recipe: &recipe, request, ..self.simulation })
     }
 
     /// A stand-in for the engine knows no derivatives.
@@ -137,19 +114,17 @@ pub struct Engine;
 
 impl Evaluate for Engine {
     fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
-        let Simulation { measures, trace, energies, shape, each_cycle, tolerances, rigour, link, .. } = *it;
-        let request = Request { measures, trace, energies, shape, each_cycle, tolerances, rigour, link };
-        let subject = it.recipe.subject(it.assumptions, request.needs())?;
-        Ok(measure::evaluate(subject, it.solver, &it.settings, &request)?)
+        let subject = it.recipe.subject(it.assumptions, it.request.needs())?;
+        Ok(measure::evaluate(subject, it.solver, &it.settings, &it.request)?)
     }
 
     fn array<'a>(&'a self, it: Simulation<'a>, word: GapWord) -> Result<Box<dyn Array + 'a>, RowFailure> {
-        let needs = Needs::of(it.measures, false);
+        let needs = Needs::of(it.request.measures, false);
         let mut recipe = it.recipe.clone();
         let dampers = recipe.subject(it.assumptions, needs)?.scene.dampers.len();
         recipe.set_gaps(word, &vec![1.0; dampers])?;
         let subject = recipe.subject(it.assumptions, needs)?;
-        Ok(Box::new(Prepared::new(subject, it.solver, it.settings, it.measures)?))
+        Ok(Box::new(Prepared::new(subject, it.solver, it.settings, it.request.measures)?))
     }
 }
 

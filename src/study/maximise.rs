@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
 use super::row_failure::RowFailure;
 use crate::experiment::{MOST_PEAKS, Maximise, ParameterValue, SearchPoint};
-use crate::measure::{Evaluated, Rigour, SolverChoice};
+use crate::measure::{Evaluated, Request, Rigour, SolverChoice};
 use crate::optimise::{Point, overshoot};
 use crate::text::words;
 
@@ -191,8 +191,9 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
         let mut recipe = simulation.recipe.clone();
         let place = |reason| RowFailure::At { parameter: words::of_key(&maximise.over), at, reason: Box::new(reason) };
         recipe.set(maximise.over, ParameterValue::Number(at)).map_err(|error| place(error.into()))?;
-        let evaluated =
-            evaluate_guarded(self.evaluate, &Simulation { recipe: &recipe, rigour, ..*simulation }).map_err(place)?;
+        let request = Request { rigour, ..simulation.request };
+        let simulation = Simulation { recipe: &recipe, request, ..*simulation };
+        let evaluated = evaluate_guarded(self.evaluate, &simulation).map_err(place)?;
         match evaluated.measured.get(self.measure) {
             Some(measured) if !measured.value.is_nan() => Ok(Tried { at, value: measured.value, evaluated, rigour }),
             _ => Err(place(RowFailure::NoValue(words::of_key(&maximise.measure)))),

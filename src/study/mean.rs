@@ -8,7 +8,7 @@ use super::evaluate::{Evaluate, Simulation};
 use super::row_failure::RowFailure;
 use crate::dynamics::Proof;
 use crate::experiment::{Experiment, MeanRatio};
-use crate::measure::{Evaluated, Measure, Measured};
+use crate::measure::{Evaluated, Measure, Measured, Request};
 
 /// The measures to ask of each setting, so that means can be taken.
 pub(super) fn measures_of_each(measures: &[Measure]) -> Vec<Measure> {
@@ -35,13 +35,14 @@ impl<E: Evaluate> Evaluate for Averaging<'_, E> {
             return self.evaluate.evaluate(simulation);
         }
         let recipes = self.experiment.recipes_in(simulation.recipe)?;
-        let measures = measures_of_each(simulation.measures);
-        let one = |recipe| self.evaluate.evaluate(&Simulation { recipe, measures: &measures, ..*simulation });
+        let measures = measures_of_each(simulation.request.measures);
+        let request = Request { measures: &measures, ..simulation.request };
+        let one = |recipe| self.evaluate.evaluate(&Simulation { recipe, request, ..*simulation });
         // Through a list, so that of several failures the first in order is reported.
         let each: Vec<Result<Evaluated, RowFailure>> = recipes.par_iter().map(one).collect();
         let each = each.into_iter().collect::<Result<Vec<_>, _>>()?;
         let ratio = simulation.recipe.mean_ratio_under(simulation.assumptions)?;
-        Ok(mean(simulation.measures, &measures, ratio, &each))
+        Ok(mean(simulation.request.measures, &measures, ratio, &each))
     }
 }
 

@@ -67,16 +67,17 @@ impl<'a> RowFingerprints<'a> {
         match self.experiment.recipe_of(case) {
             Ok(recipe) => {
                 let asked = asked(self.experiment, &recipe, variant, job);
-                let is_result = asked.rigour == Rigour::Result;
-                feed(&mut hasher, &(&recipe, asked.solver, is_result, asked.trace, asked.energies, asked.shape));
-                if asked.rigour == Rigour::Variant {
+                let request = asked.request;
+                let is_result = request.rigour == Rigour::Result;
+                feed(&mut hasher, &(&recipe, asked.solver, is_result, request.trace, request.energies, request.shape));
+                if request.rigour == Rigour::Variant {
                     feed(&mut hasher, &("ensemble", ENSEMBLE_OF_A_VARIANT));
                 }
-                if let Some(each_cycle) = asked.each_cycle {
+                if let Some(each_cycle) = request.each_cycle {
                     feed(&mut hasher, &("each_cycle", each_cycle));
                 }
-                if !asked.tolerances.is_empty() {
-                    feed(&mut hasher, &("tolerances", asked.tolerances));
+                if !request.tolerances.is_empty() {
+                    feed(&mut hasher, &("tolerances", request.tolerances));
                 }
                 feed(&mut hasher, &self.read(&recipe, &variant.assumptions));
             }

@@ -154,7 +154,7 @@ pub(super) struct Metered<'a, E> {
 
 impl<E: Evaluate> Evaluate for Metered<'_, E> {
     fn evaluate(&self, simulation: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
-        self.meter.time(simulation.solver, simulation.rigour, || self.evaluate.evaluate(simulation))
+        self.meter.time(simulation.solver, simulation.request.rigour, || self.evaluate.evaluate(simulation))
     }
 
     fn array<'a>(&'a self, simulation: Simulation<'a>, word: GapWord) -> Result<Box<dyn Array + 'a>, RowFailure> {

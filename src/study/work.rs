@@ -19,7 +19,7 @@ use super::tabulate::{self, Outcome, Row};
 use super::variant::Variant;
 use crate::dynamics::is_interrupted;
 use crate::experiment::{Case, Experiment, Recipe, SearchPoint};
-use crate::measure::{Link, Rigour};
+use crate::measure::{Link, Request, Rigour};
 use crate::table::RowFingerprint;
 use crate::text::words;
 
@@ -169,16 +169,18 @@ pub(super) fn asked<'a>(
         assumptions: &variant.assumptions,
         solver: job.solver,
         settings: experiment.settings_under(&variant.assumptions),
-        measures: &experiment.measures,
-        // An instant that an entry reads off a time history has to be moved with the inputs.
-        trace: experiment.trace.as_ref(),
-        // Other lists are the baseline's alone; a measure of a shape needs it everywhere.
-        energies: experiment.energies.as_ref().filter(|_| job.variant == 0),
-        shape: experiment.shape.as_ref().filter(|_| job.variant == 0 || needs_shape(experiment)),
-        each_cycle: experiment.each_cycle.as_ref().filter(|_| job.variant == 0),
-        tolerances: &experiment.tolerances,
-        link: Link::None,
-        rigour: if job.variant == 0 { Rigour::Result } else { rigours_of_others(experiment)[0] },
+        request: Request {
+            measures: &experiment.measures,
+            // An instant that an entry reads off a time history has to be moved with the inputs.
+            trace: experiment.trace.as_ref(),
+            // Other lists are the baseline's alone; a measure of a shape needs it everywhere.
+            energies: experiment.energies.as_ref().filter(|_| job.variant == 0),
+            shape: experiment.shape.as_ref().filter(|_| job.variant == 0 || needs_shape(experiment)),
+            each_cycle: experiment.each_cycle.as_ref().filter(|_| job.variant == 0),
+            tolerances: &experiment.tolerances,
+            link: Link::None,
+            rigour: if job.variant == 0 { Rigour::Result } else { rigours_of_others(experiment)[0] },
+        },
     }
 }
 
@@ -206,7 +208,8 @@ fn simulate(
 ) -> Outcome {
     let evaluate = &Averaging { experiment, evaluate };
     let recipe = experiment.recipe_of(case)?;
-    let simulation = Simulation { link, ..asked(experiment, &recipe, variant, job) };
+    let mut simulation = asked(experiment, &recipe, variant, job);
+    simulation.request.link = link;
     let Some(maximise) = &experiment.maximise else {
         let evaluated = evaluate_guarded(evaluate, &simulation);
         done();
@@ -215,9 +218,11 @@ fn simulate(
     let measure = tabulate::maximised_index(experiment, maximise.measure)
         .ok_or_else(|| RowFailure::NotMeasured(words::of_key(&maximise.measure)))?;
     // Histories of the points that are not the maximum are not wanted.
-    let trace = simulation.trace.filter(|_| measures_need_trace(&experiment.measures));
-    let shape = simulation.shape.filter(|_| needs_shape(experiment));
-    let point = Simulation { trace, energies: None, shape, each_cycle: None, ..simulation };
+    let asked = simulation.request;
+    let trace = asked.trace.filter(|_| measures_need_trace(&experiment.measures));
+    let shape = asked.shape.filter(|_| needs_shape(experiment));
+    let point =
+        Simulation { request: Request { trace, energies: None, shape, each_cycle: None, ..asked }, ..simulation };
     let Sought { mut evaluated, place, rise } =
         Along { evaluate, simulation: point, maximise, measure, done }.found()?;
     if job.variant == 0 {

@@ -53,7 +53,7 @@ impl Evaluate for Relay {
         if self.fails_at.is_some_and(|at| at == force) {
             return Err(RowFailure::NoValue("velocity_ratio".into()));
         }
-        let before = match it.link {
+        let before = match it.request.link {
             Link::None | Link::First => 0.0,
             Link::After(StartState::Given { q, .. }) => q[0],
             Link::After(StartState::StaticEquilibrium) => f64::NAN,
@@ -66,17 +66,23 @@ impl Evaluate for Relay {
             before
         };
         Ok(Evaluated {
-            measured: it.measures.iter().map(|_| Measured { value: state, numerical: 0.0, spread: 0.0 }).collect(),
+            measured: it
+                .request
+                .measures
+                .iter()
+                .map(|_| Measured { value: state, numerical: 0.0, spread: 0.0 })
+                .collect(),
             proof: Proof::default(),
             chaotic: false,
             unknown: None,
             members: 1,
             motion: None,
             trace: it
+                .request
                 .each_cycle
                 .map(|_| vec![TraceColumn::new("impact_speed", "m/s", vec![force, state])])
                 .unwrap_or_default(),
-            end: (!matches!(it.link, Link::None)).then(|| StartState::Given {
+            end: (!matches!(it.request.link, Link::None)).then(|| StartState::Given {
                 q: vec![state],
                 rate: vec![0.0],
                 particles: vec![(Contact::Floor, 0.0, 0.0)],

@@ -251,13 +251,13 @@ impl Evaluate for MadeUp {
         let octave = libm::log(strength / (2.0 * peak));
         let value = mass + peak / (1.0 + octave * octave) + stop + coarse;
         Ok(Evaluated {
-            measured: it.measures.iter().map(|_| Measured { value, numerical: 1e-12, spread: 0.0 }).collect(),
+            measured: it.request.measures.iter().map(|_| Measured { value, numerical: 1e-12, spread: 0.0 }).collect(),
             proof: Proof { events: 490, smallest_margin: 1e-3, ..Proof::default() },
             chaotic: false,
             unknown: None,
             members: 1,
             motion: None,
-            trace: it.trace.map(|_| vec![TraceColumn::new("time", "s", vec![0.0, 1.0])]).unwrap_or_default(),
+            trace: it.request.trace.map(|_| vec![TraceColumn::new("time", "s", vec![0.0, 1.0])]).unwrap_or_default(),
             end: None,
         })
     }

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use shotdamp::dynamics::Proof;
 use shotdamp::experiment::{Experiment, ExperimentId, GapWord, Problems, load_assumptions, parse_experiment};
-use shotdamp::measure::{Evaluated, Measure, Measured, Rigour};
+use shotdamp::measure::{Evaluated, Measure, Measured, Request, Rigour};
 use shotdamp::optimise::{
     Batch, Bounds, Dense, Genetic, GeneticSettings, Score, Slope, Spacing, Stopping, Wanted, dense, minimise, two_opt,
 };
@@ -73,6 +73,7 @@ impl Evaluate for Bowl {
         };
         Ok(Evaluated {
             measured: it
+                .request
                 .measures
                 .iter()
                 .map(|measure| Measured { value: value(measure), numerical: self.error, spread: self.error })
@@ -224,7 +225,7 @@ fn a_landscape_goes_through_the_candidate_that_is_best_after_its_ensemble() {
             let mut evaluated = self.0.evaluate(it)?;
             let scene = it.recipe.resolve(it.assumptions)?;
             let is_uniform = scene.dampers.windows(2).all(|pair| pair[0].gap == pair[1].gap);
-            if it.rigour == Rigour::Step && is_uniform {
+            if it.request.rigour == Rigour::Step && is_uniform {
                 evaluated.measured.iter_mut().for_each(|measured| measured.value *= 0.1);
             }
             Ok(evaluated)
@@ -383,11 +384,11 @@ fn a_scene_that_is_prepared_once_gives_the_bits_of_one_that_is_built_for_its_gap
     let recipes = experiment.recipes_of(&experiment.cases[1]).unwrap();
     for recipe in &recipes {
         let step = Simulation::step(&experiment, recipe, &assumptions, &experiment.measures);
-        let simulation = Simulation { rigour: Rigour::Result, ..step };
+        let simulation = Simulation { request: Request { rigour: Rigour::Result, ..step.request }, ..step };
         let built = Engine.evaluate(&simulation).unwrap();
         let ready: Box<dyn Array + '_> = Engine.array(simulation, shotdamp::experiment::GapWord::Gap).unwrap();
-        assert_eq!(ready.evaluate(&[0.0083, 0.0568, 0.003, 0.0188], simulation.rigour).unwrap(), built);
-        let other = ready.evaluate(&[0.0419; 4], simulation.rigour).unwrap();
+        assert_eq!(ready.evaluate(&[0.0083, 0.0568, 0.003, 0.0188], simulation.request.rigour).unwrap(), built);
+        let other = ready.evaluate(&[0.0419; 4], simulation.request.rigour).unwrap();
         assert_ne!(other.measured, built.measured);
     }
 }

@@ -196,7 +196,7 @@ fn no_luck_of_a_single_run_is_the_maximum_and_far_below_it_no_ensemble_is_asked_
     impl Evaluate for Lucky {
         fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
             let mean = Curve(|x, _| (1.0 + hill(x, 4.0, 2.0, 0.7), 0.05, true)).evaluate(it)?;
-            if it.rigour != Rigour::Step {
+            if it.request.rigour != Rigour::Step {
                 self.0.fetch_add(1, Ordering::Relaxed);
                 return Ok(mean);
             }

@@ -378,7 +378,8 @@ impl<E: Effects> March<'_, E> {
         let closed: Few<Closed> = touches.iter().map(|touch| touch.closed).collect();
         let still: Few<f64> = Few::from_elem(0.0, closed.len());
         let all: Few<bool> = Few::from_elem(true, closed.len());
-        let pushes = collision::push(&closed, &self.answers(&touches), &all, &still);
+        let answers = self.answers(&touches);
+        let pushes = collision::push(&closed, &answers, &all, &still);
         let outcome = |(contact, p): (&Closed, &f64)| Outcome { impulse: p * contact.mass, speed: 0.0, pushed: true };
         let outcomes: Few<Outcome> = closed.iter().zip(&pushes).map(outcome).collect();
         self.exchange(&touches, &outcomes);
@@ -392,8 +393,7 @@ impl<E: Effects> March<'_, E> {
             })
             .collect();
         let own = touches.iter().position(|touch| touch.particle == candidate.particle);
-        let lightening =
-            own.map_or(1.0, |own| -1.0 / collision::push(&alone, &self.answers(&touches), &all, &still)[own]);
+        let lightening = own.map_or(1.0, |own| -1.0 / collision::push(&alone, &answers, &all, &still)[own]);
         let series = if candidate.restitution < 1.0 { 1.0 / (1.0 - candidate.restitution) } else { 0.0 };
         let tail = 2.0 * candidate.speed / (grip.push * lightening) * series;
         let speed = candidate.side.away() * candidate.speed;

@@ -158,19 +158,12 @@ impl Tape {
     pub(crate) fn begin_cycle(&mut self) {
         // In the room of the one that is forgotten, or about as long as the last one.
         let is_full = self.cycles.len() >= self.kept.max(1);
-        let room = if is_full { self.cycles.pop_front() } else { None };
-        let (steps, numbers) = room.map_or_else(
-            || {
-                self.cycles.back().map_or_else(Default::default, |last| {
-                    (Vec::with_capacity(last.steps.len()), Vec::with_capacity(last.numbers.len()))
-                })
-            },
-            |Cycle { mut steps, mut numbers, .. }| {
-                steps.clear();
-                numbers.clear();
-                (steps, numbers)
-            },
-        );
+        let forgotten = if is_full { self.cycles.pop_front() } else { None };
+        let as_long = |last: &Cycle| (Vec::with_capacity(last.steps.len()), Vec::with_capacity(last.numbers.len()));
+        let room = forgotten.map(|Cycle { steps, numbers, .. }| (steps, numbers));
+        let (mut steps, mut numbers) = room.or_else(|| self.cycles.back().map(as_long)).unwrap_or_default();
+        steps.clear();
+        numbers.clear();
         self.cycles.push_back(Cycle { steps, numbers, ..Cycle::default() });
         // Jumps that put the start right belong to no cycle.
         self.jumps.clear();
