@@ -13,7 +13,7 @@ use super::layout::{Place, line_height};
 use super::legend::Obstacles;
 use super::line::{Curve, Join};
 use super::panel::Panel;
-use super::peak::peaks;
+use super::peak::PeakMark;
 use super::strip;
 use super::style::{
     BAND_OPACITY, CLOSER_OPACITY, CURVE, Color, FRAME, GREY, GRID, GUIDE, GUIDE_DASH, INK, LABEL_TEXT, Look, MARKER,
@@ -140,43 +140,36 @@ fn curve(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, curve: &Curve) {
 
 /// A triangle on each peak, with its place on the x axis where there is room for the number.
 fn peak_marks(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, taken: &mut Obstacles) {
-    let Some(marks) = panel.spec.peaks else { return };
-    for curve in &panel.curves {
-        for sample in peaks(curve, &panel.y, marks) {
-            let Some(top) = panel.place(frame, sample.x, sample.y) else { continue };
-            let at = Point { y: top.y - 1.4 * MARKER, ..top };
-            marker(sheet, at, Look { marker: Marker::Down, ..curve.look });
-            let text = compact(panel.x.displayed(sample.x), 4);
-            let (width, half) = (text_width(&text, NOTE_TEXT), NOTE_TEXT / 2.0);
-            let (up, aside) = (half + MARKER + SPACE / 2.0, width / 2.0 + MARKER + SPACE / 2.0);
-            let higher = |rows: f64| up + rows * NOTE_TEXT;
-            let places = [
-                (0.0, up),
-                (aside, 0.0),
-                (-aside, 0.0),
-                (aside, up),
-                (-aside, up),
-                (0.0, higher(1.0)),
-                (aside, higher(1.0)),
-                (-aside, higher(1.0)),
-                (0.0, higher(2.0)),
-                (1.6 * aside, 0.0),
-                (-1.6 * aside, 0.0),
-                (aside, -up),
-                (-aside, -up),
-            ];
-            let place = places.map(|(right, up)| {
-                let (x, y) = (at.x + right, at.y - up);
-                Rect { left: x - width / 2.0, top: y - half, right: x + width / 2.0, bottom: y + half }
-            });
-            let room = frame.grown(-SPACE / 2.0);
-            let within = |place: &Rect| place.left > room.left && place.right < room.right && place.top > room.top;
-            let free = place.into_iter().find(|place| within(place) && taken.leave_free(&place.grown(2.0)));
-            taken.boxes.push(Rect { left: at.x, top: at.y, right: at.x, bottom: at.y }.grown(1.2 * MARKER));
-            if let Some(place) = free {
-                write(sheet, place.at(0.5, 0.5), &text, NOTE_TEXT, Anchor::Centre, curve.look.color);
-                taken.boxes.push(place);
-            }
+    for PeakMark { at, x, look } in panel.peak_marks(frame) {
+        marker(sheet, at, Look { marker: Marker::Down, ..look });
+        let text = compact(panel.x.displayed(x), 4);
+        let (width, half) = (text_width(&text, NOTE_TEXT), NOTE_TEXT / 2.0);
+        let (up, aside) = (half + MARKER + SPACE / 2.0, width / 2.0 + MARKER + SPACE / 2.0);
+        let higher = |rows: f64| up + rows * NOTE_TEXT;
+        let places = [
+            (0.0, up),
+            (aside, 0.0),
+            (-aside, 0.0),
+            (aside, up),
+            (-aside, up),
+            (0.0, higher(1.0)),
+            (aside, higher(1.0)),
+            (-aside, higher(1.0)),
+            (0.0, higher(2.0)),
+            (1.6 * aside, 0.0),
+            (-1.6 * aside, 0.0),
+            (aside, -up),
+            (-aside, -up),
+        ];
+        let place = places.map(|(right, up)| {
+            let (x, y) = (at.x + right, at.y - up);
+            Rect { left: x - width / 2.0, top: y - half, right: x + width / 2.0, bottom: y + half }
+        });
+        let room = frame.grown(-SPACE / 2.0);
+        let within = |place: &Rect| place.left > room.left && place.right < room.right && place.top > room.top;
+        if let Some(place) = place.into_iter().find(|place| within(place) && taken.leave_free(&place.grown(2.0))) {
+            write(sheet, place.at(0.5, 0.5), &text, NOTE_TEXT, Anchor::Centre, look.color);
+            taken.boxes.push(place);
         }
     }
 }

@@ -15,6 +15,7 @@ use super::label;
 use super::layout::Needs;
 use super::legend::{Legend, Obstacles};
 use super::line::{Curve, Join, Sample, Source, curves};
+use super::peak::{PeakMark, peaks};
 use super::quoted::Quoted;
 use super::render::Beside;
 use super::strip::{self, Strip};
@@ -261,6 +262,19 @@ impl<'a> Panel<'a> {
         signs(points, &alone, frame)
     }
 
+    /// The marks on the peaks of the curves, curve by curve.
+    pub(super) fn peak_marks(&self, frame: &Rect) -> Vec<PeakMark> {
+        let Some(marks) = self.spec.peaks else { return Vec::new() };
+        let of_curve = |curve: &Curve| {
+            let mark = |sample: Sample| {
+                let top = self.place(frame, sample.x, sample.y)?;
+                Some(PeakMark { at: Point { y: top.y - 1.4 * MARKER, ..top }, x: sample.x, look: curve.look })
+            };
+            peaks(curve, &self.y, marks).into_iter().filter_map(mark).collect::<Vec<_>>()
+        };
+        self.curves.iter().flat_map(of_curve).collect()
+    }
+
     /// A curve's dots, those that fall on one place once.
     pub(super) fn dots(&self, frame: &Rect, curve: &Curve) -> Vec<Point> {
         let mut seen = BTreeSet::new();
@@ -325,6 +339,7 @@ impl<'a> Panel<'a> {
         }
         let around = |at: Point| Rect { left: at.x, top: at.y, right: at.x, bottom: at.y }.grown(MARKER);
         obstacles.boxes.extend(self.signs(frame).into_iter().map(|sign| around(sign.at)));
+        obstacles.boxes.extend(self.peak_marks(frame).into_iter().map(|mark| around(mark.at).grown(0.2 * MARKER)));
         if self.spec.markers {
             let samples = self.curves.iter().filter(|curve| curve.join == Join::Line).flat_map(|curve| &curve.samples);
             obstacles.boxes.extend(samples.filter_map(|sample| self.place(frame, sample.x, sample.y)).map(around));

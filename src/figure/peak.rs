@@ -3,7 +3,16 @@
 use crate::experiment::PeakMarks;
 
 use super::axis::Axis;
+use super::geometry::Point;
 use super::line::{Curve, Sample};
+use super::style::Look;
+
+/// A mark on a peak, with its place on the x axis.
+pub(super) struct PeakMark {
+    pub(super) at: Point,
+    pub(super) x: f64,
+    pub(super) look: Look,
+}
 
 /// The samples of a curve at which it peaks, the most prominent first. A peak's prominence is how far one has to descend
 /// from it before the curve rises above it, here as a share of the axis.

@@ -18,7 +18,7 @@ use crate::experiment::ExperimentId;
 pub const RECORD_FORMAT: u32 = 2;
 
 /// Raised when figures or reports of the same tables come out differently, so that they are made again.
-pub const PRESENTATION_VERSION: u32 = 16;
+pub const PRESENTATION_VERSION: u32 = 17;
 
 /// What became of one experiment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
