@@ -207,6 +207,13 @@ pub(super) struct RunArgs {
     pub no_wait: bool,
 }
 
+impl RunArgs {
+    /// Tables that are known to be up to date are read, too.
+    pub(super) fn reads_all(&self) -> bool {
+        self.force || self.verify
+    }
+}
+
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:

@@ -13,7 +13,7 @@ use crate::text::words::{capitalised, counted};
 
 /// Prints it, and writes nothing.
 pub(super) fn dry_run(layout: &Layout, found: Found, args: &RunArgs, common: &Args) -> Result<Exit, CliError> {
-    let study = found.open(layout, &args.choice, args.force);
+    let study = found.open(layout, &args.choice, args.reads_all());
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
     let threads = common.workers();

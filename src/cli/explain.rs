@@ -54,6 +54,7 @@ fn tried(study: &Study, judged: &Judged, common: &Args) -> Result<Vec<Trial>, Cl
     let experiments: Vec<&Experiment> = study.items.iter().map(|item| &item.source.experiment).collect();
     let asked = (judged.experiment.as_str(), entry);
     let in_force = study.sheet.assumptions();
+    let fitted = study.fitted().contains(&judged.id);
     let mut trials = Vec::new();
     // As many at once as there are threads: each portion ends with a line, and outlasts an interrupt of the next.
     for portion in moves.chunks(common.workers()) {
@@ -67,7 +68,7 @@ fn tried(study: &Study, judged: &Judged, common: &Args) -> Result<Vec<Trial>, Cl
         let trial = |((name, to), read): (&(AssumptionName, AssumptionValue), Read)| Trial {
             name: name.clone(),
             to: to.clone(),
-            moved: moved(judged, read),
+            moved: moved(judged, read, fitted),
         };
         trials.extend(portion.iter().zip(reads).map(trial));
         print_progress(&format!(
@@ -81,10 +82,10 @@ fn tried(study: &Study, judged: &Judged, common: &Args) -> Result<Vec<Trial>, Cl
 }
 
 /// A number keeps the uncertainties that it has in force.
-fn moved(judged: &Judged, read: Read) -> Moved {
+fn moved(judged: &Judged, read: Read, fitted: bool) -> Moved {
     let (found, value, verdict) = match read.found {
         Found::Number { simulated, .. } => {
-            let verdict = judged.comparison.as_ref().map_or(read.verdict, |known| known.verdict_of(simulated));
+            let verdict = judged.comparison.as_ref().map_or(read.verdict, |known| known.verdict_of(simulated, fitted));
             (significant(simulated, 4), Some(simulated), verdict)
         }
         Found::Claim { holds } => (if holds { "holds" } else { "does not hold" }.into(), None, read.verdict),

@@ -18,7 +18,7 @@ use crate::text::words::counted;
 /// Brings the chosen experiments up to date.
 pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<Exit, CliError> {
     let found = Found::look(layout)?;
-    if !args.force && !args.tables && !args.times && !args.verify {
+    if !args.reads_all() && !args.tables && !args.times {
         // Without lock, YAML, table or thread.
         if let Some(ids) = matched(&found, &args.choice) {
             if !args.dry_run {
@@ -36,7 +36,7 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     let _lock = Lock::of_study(layout, held(args.no_wait))?;
     // Another run may have ended before this one got the lock.
     let found = if found.snapshot.is_latest(layout) { found } else { Found::look(layout)? };
-    let mut study = found.open(layout, &args.choice, args.force || args.verify);
+    let mut study = found.open(layout, &args.choice, args.reads_all());
     args.limit.apply(&mut study);
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());

@@ -99,10 +99,7 @@ impl QuantityError {
             Self::NotDimensionless(_) | Self::UnknownUnit { wanted: None, .. } => Some("write the number alone".into()),
             Self::NotIn { unit, .. } => Some(format!("write the number alone, in {unit}, or with a unit of that kind")),
             Self::WhichFrequency(_) => Some("write the number alone, in the unit of its column".into()),
-            Self::NotANumber(text) => {
-                let percent: f64 = text.strip_suffix('%')?.trim().parse().ok()?;
-                Some(format!("write the fraction: {}", percent / 100.0))
-            }
+            Self::NotANumber(text) => Some(format!("write the fraction: {}", parse_percent(text)?)),
             Self::Comma(_) => Some(NO_COMMA.into()),
             Self::NotFinite(_) => None,
         }
@@ -341,6 +338,13 @@ impl Decimal<'_> {
         // −0 is 0: nobody who writes it means another side.
         if value.is_finite() && !underflow { Ok(value + 0.0) } else { Err(not_finite()) }
     }
+}
+
+/// `0.7 %` as a fraction, with the bits of 0.007.
+pub(super) fn parse_percent(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let (number, unit) = split_number(text).ok()?;
+    (unit.trim() == "%").then(|| number.value(-2, text).ok())?
 }
 
 /// The number in front and the rest.

@@ -6,8 +6,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use super::at::At;
-use super::definition::{AxisScale, Case, Experiment, differing_in};
+use super::definition::{Case, Experiment, differing_in};
 use super::diagnostic::Findings;
+use super::figure_spec::AxisScale;
+use super::quantity::parse_percent;
 use super::range::{between, end, in_order, rounded};
 use super::reader::{number, scalar};
 use super::recipe::{Parameter, ParameterValue};
@@ -120,10 +122,8 @@ fn threshold(at: At<'_>, parameter: Parameter) -> Option<Threshold> {
 /// `1 %` or 0.01, above zero.
 pub(super) fn share(at: At<'_>) -> Option<f64> {
     let read = |node: &Node, findings: &Findings| {
-        let value = match scalar(node, findings)?.trim().strip_suffix('%') {
-            Some(percent) => percent.trim().parse::<f64>().ok().map(|percent| percent / 100.0),
-            None => Some(number(node, findings)?),
-        };
+        let text = scalar(node, findings)?;
+        let value = if text.trim().ends_with('%') { parse_percent(text) } else { Some(number(node, findings)?) };
         match value {
             Some(value) if value > 0.0 && value < 1.0 => Some(value),
             _ => findings.report(

@@ -31,12 +31,12 @@ pub(super) fn telling(u_data: f64, scale: f64) -> f64 {
 }
 
 /// The verdict on a value, and what there is to say beyond the numbers.
-pub(crate) fn verdict(comparison: &Comparison, scale: Option<f64>, fitted: bool) -> (Verdict, Option<String>) {
+pub(crate) fn verdict(comparison: &Comparison, fitted: bool) -> (Verdict, Option<String>) {
     let error = comparison.error().abs();
     if error > comparison.tolerance() {
         return (Verdict::Differs, None);
     }
-    let scale = scale.unwrap_or(comparison.published.abs());
+    let scale = comparison.scale.unwrap_or(comparison.published.abs());
     let telling = telling(comparison.u_data, scale);
     let simulated = COVERAGE * libm::hypot(comparison.u_num, comparison.u_input);
     let says_something = comparison.tolerance_by_hand.is_some()

@@ -40,7 +40,7 @@ pub fn judge(file: &ReferenceFile, tables: &Tables<'_>, fitted: &BTreeSet<String
 }
 
 /// One entry; `reads` gathers the cells that decided it.
-pub(crate) fn judge_entry(
+fn judge_entry(
     entry: &Entry,
     experiment: &str,
     tables: &Tables<'_>,
@@ -264,12 +264,11 @@ fn value(
             ToleranceSize::Relative(fraction) => fraction * datum.abs(),
             ToleranceSize::Absolute(distance) => distance * worth,
         }),
+        scale: simulated.scale,
     };
-    let (verdict, remark) = compare::verdict(&comparison, simulated.scale, fitted);
+    let (verdict, remark) = compare::verdict(&comparison, fitted);
     let description = |(variant, other): &(&str, Option<Extracted>)| {
-        let there = other.as_ref().map_or(Verdict::Differs, |other| {
-            compare::verdict(&Comparison { simulated: other.value, ..comparison }, simulated.scale, fitted).0
-        });
+        let there = other.as_ref().map_or(Verdict::Differs, |other| comparison.verdict_of(other.value, fitted));
         let found = other.as_ref().map_or_else(|| "none".into(), |other| comparison.in_words(other.value, published));
         Moved {
             variant: (*variant).into(),
@@ -280,7 +279,7 @@ fn value(
         }
     };
     let moved: Vec<Moved> = others.iter().map(description).collect();
-    let mut found = measured(&comparison, published, simulated.scale);
+    let mut found = measured(&comparison, published);
     if let Some(remark) = remark {
         found = format!("{found}; {remark}");
     }

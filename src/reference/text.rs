@@ -103,7 +103,7 @@ pub(crate) fn symbol(column: &str) -> String {
 /// What came out beside what is published, in the unit of the publication: `628 ± 65 mm/s, 21 % below 794.8 mm/s`. An instant,
 /// with the time `scale` between two of its kind, is told by the time between: `52.327 ± 0.010 s, 17 ms after 52.31 s: 3.4 u_val,
 /// 4.6 % of the time between two such events`.
-pub(crate) fn measured(comparison: &Comparison, published: &Printed, scale: Option<f64>) -> String {
+pub(crate) fn measured(comparison: &Comparison, published: &Printed) -> String {
     let factor = comparison.in_unit_of(published);
     let (here, wide) = (comparison.simulated * factor, COVERAGE * comparison.u_val() * factor);
     let unit = if published.unit().is_empty() { String::new() } else { format!(" {}", published.unit()) };
@@ -116,7 +116,7 @@ pub(crate) fn measured(comparison: &Comparison, published: &Printed, scale: Opti
     };
     let (error, datum) = (comparison.error(), published.text());
     let side = |above: &'static str, below: &'static str| if error < 0.0 { below } else { above };
-    if let Some(scale) = scale {
+    if let Some(scale) = comparison.scale {
         let (late, units) = (with_unit(error.abs(), 2, "s"), significant(comparison.deviation(), 2));
         let share = percent(error.abs() / scale);
         return format!(

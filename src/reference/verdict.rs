@@ -70,6 +70,9 @@ pub struct Comparison {
     pub spread: f64,
     /// The tolerance in force, if it was set by hand.
     pub tolerance_by_hand: Option<f64>,
+    /// What agreement is measured against where zero is no natural origin: the time between two events of the kind.
+    #[serde(skip)]
+    pub scale: Option<f64>,
 }
 
 impl Comparison {
@@ -99,8 +102,8 @@ impl Comparison {
 
     /// The verdict that another number would have in the place of this one, with the same uncertainties.
     #[must_use]
-    pub fn verdict_of(&self, simulated: f64) -> Verdict {
-        super::compare::verdict(&Self { simulated, ..*self }, None, false).0
+    pub fn verdict_of(&self, simulated: f64, fitted: bool) -> Verdict {
+        super::compare::verdict(&Self { simulated, ..*self }, fitted).0
     }
 
     /// What the table's unit is in the unit of the publication; a number of events has none.
@@ -288,10 +291,7 @@ impl Judged {
     #[must_use]
     pub fn comes_out(&self, errors: [f64; 2]) -> bool {
         let stays = |error: f64| match &self.comparison {
-            Some(comparison) => {
-                let simulated = comparison.published * (1.0 + error);
-                super::compare::verdict(&Comparison { simulated, ..*comparison }, None, true).0 == Verdict::Fitted
-            }
+            Some(comparison) => comparison.verdict_of(comparison.published * (1.0 + error), true) == Verdict::Fitted,
             None => error == 0.0,
         };
         self.verdict == Verdict::Fitted && errors.into_iter().all(stays)

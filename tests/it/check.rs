@@ -46,6 +46,7 @@ fn off_by(deviation: f64) -> Option<Comparison> {
         u_data: 0.01,
         spread: 0.0,
         tolerance_by_hand: None,
+        scale: None,
     })
 }
 

@@ -20,6 +20,8 @@ fn a_placeholder_that_is_none_is_an_error_with_its_line() {
         ("\"It is {there}.\"", "unknown placeholder `{there}`"),
         ("\"It is {here.\"", "an opening `{` without its `}`"),
         ("\"It is {here: minimum}.\"", "a placeholder of `minimum`"),
+        // Under a move one number comes out.
+        ("\"It is {here 2: optimum, gravity=0}.\"", "unknown placeholder `{here 2: optimum, gravity=0}`"),
     ] {
         let problems =
             parse_reference("ch3-gap", "it.yaml", &format!("{ENTRY}{explanation}\n")).unwrap_err().to_string();

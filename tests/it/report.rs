@@ -67,6 +67,7 @@ fn judged() -> Vec<Judged> {
             u_data: 0.5,
             spread: 0.0,
             tolerance_by_hand: Some(0.3),
+            scale: None,
         }),
         tolerance_reason: Some("\"approximately\": the text rounds to whole numbers | or coarser".into()),
         explanation: "The stop length was chosen by this number.".into(),
@@ -93,6 +94,7 @@ fn judged() -> Vec<Judged> {
             u_data: 0.0005,
             spread: 0.0,
             tolerance_by_hand: None,
+            scale: None,
         }),
         robust: None,
         moved: Vec::new(),
@@ -304,9 +306,19 @@ fn the_rule_of_agreement_is_said_once_and_is_the_one_that_judges() {
     assert!(index.contains("The two agree if |E| ≤ 2 u_val. **± is 2 u_val**"), "{index}");
     let at = |deviation: f64| {
         let comparison = judged[3].comparison.unwrap();
-        comparison.verdict_of(comparison.published + deviation * comparison.u_val())
+        comparison.verdict_of(comparison.published + deviation * comparison.u_val(), false)
     };
     assert_eq!((at(1.9), at(2.1)), (Verdict::Reproduced, Verdict::Differs));
+}
+
+#[test]
+fn another_number_has_the_verdict_that_it_would_have_in_the_place_of_the_one_that_came_out() {
+    let peak = judged()[3].comparison.unwrap();
+    assert_eq!(peak.verdict_of(peak.published, true), Verdict::Fitted);
+    // An instant some fifty seconds after the start is known to 0.1 s: much for an event that comes every 0.2 s.
+    let instant = Comparison { published: 52.55, u_input: 0.05, scale: Some(0.2), ..peak };
+    assert_eq!(instant.verdict_of(52.6, false), Verdict::Blocked);
+    assert_eq!(Comparison { scale: None, ..instant }.verdict_of(52.6, false), Verdict::Reproduced);
 }
 
 #[test]

@@ -530,6 +530,15 @@ pub(crate) fn sweeps_are_products_pairs_points_and_unions() {
 }
 
 #[test]
+fn a_percentage_is_the_decimal_that_it_says() {
+    for (percent, decimal) in [("0.7 %", "0.007"), ("1 %", "0.01"), ("55.6%", "0.556"), ("1e1 %", "0.1")] {
+        let [a, b] = [percent, decimal]
+            .map(|share| good(&with("measure: [", &format!("tolerances: {{gap: {share}}}\nmeasure: ["))).tolerances);
+        assert_eq!(a, b, "{percent}");
+    }
+}
+
+#[test]
 fn a_binomial_pulse_lasts_whole_milliseconds() {
     let train = "impulse_train: {force_ratio: swept, frequency_ratio: 1}";
     let pulses = |shape: &str, duration: &str| {
