@@ -113,7 +113,7 @@ pub(super) fn describe_defaults(at: At<'_>) -> Option<()> {
 }
 
 /// `{skip: 25 cycles, average: 100 cycles}`.
-pub(super) fn read_cycles(at: At<'_>) -> Option<Cycles> {
+fn read_cycles(at: At<'_>) -> Option<Cycles> {
     let keys = at.keys("a run")?;
     let skip = keys.required("skip", SKIP, read_skip);
     let average = keys.required("average", AVERAGE, read_average);

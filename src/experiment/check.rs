@@ -9,8 +9,9 @@ use crate::scene::Scene;
 
 use super::assumption_sheet::AssumptionSheet;
 use super::continued::ContinuedSweep;
-use super::definition::{Case, Drawing, Experiment, FigureSpec, Maximise, Panel, SearchPoint};
+use super::definition::{Case, Experiment, Maximise, SearchPoint};
 use super::diagnostic::{Findings, Span};
+use super::figure_spec::{Drawing, FigureSpec, Panel};
 use super::optimise::Optimise;
 use super::refined::{Refinement, curves};
 use super::refusal::{Meant, Places, Refusal};
@@ -73,7 +74,7 @@ impl Checks<'_> {
         }
     }
 
-    /// A motion has a name in a single run, from certified event to certified event.
+    /// `motion` and what comes with it need a single event-driven run: a mean over several runs has no name, and neither has a maximum.
     pub fn motion(
         &self,
         measures: &[(Measure, Span)],

@@ -5,8 +5,9 @@ use serde_json::json;
 use super::recipe::{GapWord, Parameter};
 
 use super::continuation::BranchColumn;
-use super::definition::{Case, Experiment, Joined, Maximise};
+use super::definition::{Case, Experiment, Maximise};
 use super::diagnostic::{Findings, Span};
+use super::figure_spec::Joined;
 use super::reader::unknown;
 use super::schema::parts::any_of;
 use super::starts::{BasinColumn, START_LISTS, Starts};

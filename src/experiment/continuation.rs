@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::definition::{AxisScale, Case, Experiment};
+use super::definition::{Case, Experiment};
+use super::figure_spec::AxisScale;
 use super::optimise::Optimise;
 use super::recipe::{Parameter, ParameterValue};
 use super::starts::Starts;

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use super::at::At;
 use super::continuation::Continuation;
-use super::definition::AxisScale;
 use super::diagnostic::{Findings, Span};
+use super::figure_spec::AxisScale;
 use super::range::{by_kind, end, in_order, size};
 use super::reader::no_such;
 use super::recipe::Parameter;

@@ -4,10 +4,11 @@ use serde_json::json;
 
 use super::at::At;
 use super::columns::{Columns, Role};
-use super::definition::{
-    AnimationSpec, Axis, AxisScale, AxisUnit, Band, Case, Drawing, FigureSpec, Level, Only, Panel, PeakMarks, Strip,
-};
+use super::definition::Case;
 use super::diagnostic::{Findings, Span};
+use super::figure_spec::{
+    AnimationSpec, Axis, AxisScale, AxisUnit, Band, Drawing, FigureSpec, Level, Only, Panel, PeakMarks, Strip,
+};
 use super::keys::Keys;
 use super::quantity::worth;
 use super::reader::{number, scalar};

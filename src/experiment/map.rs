@@ -2,8 +2,8 @@
 
 use super::at::At;
 use super::columns::Role;
-use super::definition::{Best, MapSpec, Mark};
 use super::figure::{FigureReader, column_name};
+use super::figure_spec::{Best, MapSpec, Mark};
 
 impl FigureReader<'_> {
     /// `{x: damper_x, y: damper_y, value: velocity_ratio, by: sweep, mark: {x: force_x, y: force_y, label: force}}`.

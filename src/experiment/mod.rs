@@ -20,6 +20,7 @@ mod edit;
 mod excitation;
 mod exclusions;
 mod figure;
+mod figure_spec;
 mod finding;
 mod in_words;
 mod keys;
@@ -69,14 +70,15 @@ pub(crate) use columns::Columns;
 pub use continuation::{BranchColumn, Continuation, RowSource, Stability};
 pub use continued::{ContinuedSweep, Direction};
 pub(crate) use definition::MOST_PEAKS;
-pub use definition::{
-    AnimationSpec, Axis, AxisScale, AxisUnit, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError,
-    Joined, Level, MapSpec, Mark, Maximise, Only, Panel, PeakMarks, SearchPoint, Source, Strip, Transient,
-};
+pub use definition::{Case, Experiment, ExperimentId, IdError, Maximise, SearchPoint, Source, Transient};
 pub(crate) use diagnostic::{Findings, Span, place};
 pub use diagnostic::{Place, Problem, Problems, Severity};
 pub(crate) use edit::{Written, set_keys};
 pub(crate) use figure::SCENE_DRAWING;
+pub use figure_spec::{
+    AnimationSpec, Axis, AxisScale, AxisUnit, Band, Best, Drawing, FigureSpec, Joined, Level, MapSpec, Mark, Only,
+    Panel, PeakMarks, Strip,
+};
 pub use finding::{FindingError, FindingNumber, FindingText, InputSet};
 pub use in_words::value_in_words;
 pub(crate) use keys::Keys;

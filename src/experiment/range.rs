@@ -6,8 +6,8 @@
 use serde_json::json;
 
 use super::at::At;
-use super::definition::AxisScale;
 use super::diagnostic::{Findings, Span};
+use super::figure_spec::AxisScale;
 use super::reader::scalar;
 use super::recipe::{Parameter, ParameterValue, Takes};
 use super::schema::parts;

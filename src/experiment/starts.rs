@@ -6,7 +6,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::definition::Experiment;
 use crate::measure::column_of_damper;
 use crate::optimise::Stream;
 use crate::scene::{ParticleStart, Scene, Start};
@@ -265,13 +264,5 @@ impl Rank {
             Self::Best => "best",
             Self::Other => "other",
         }
-    }
-}
-
-impl Experiment {
-    /// Runs of all cases from random starts.
-    #[must_use]
-    pub fn random_runs(&self) -> u64 {
-        self.starts.as_ref().map_or(0, |starts| u64::from(starts.count)) * self.cases.len() as u64
     }
 }

@@ -5,7 +5,6 @@ use super::axis::{Axis, Extent, Room};
 use super::canvas::{Anchor, Lettering, Pen, Sheet, svg, text_width};
 use super::error::FigureError;
 use super::geometry::{Point, Rect};
-use super::group::number;
 use super::label;
 use super::line::Source;
 use super::style::{
@@ -68,7 +67,8 @@ fn series(source: Source<'_>, optimise: &Optimise) -> Result<Vec<Series>, Figure
         return Err(FigureError::Nothing { figure: source.figure.to_owned() });
     };
     let value = source.column(&words::of_key(&optimise.measure))?;
-    let gaps = |row: usize| columns.iter().map(|column| number(column, row).unwrap_or(f64::NAN)).collect::<Vec<f64>>();
+    let gaps =
+        |row: usize| columns.iter().map(|column| column.data.number(row).unwrap_or(f64::NAN)).collect::<Vec<f64>>();
     let own = |name: &str| optimise.candidates.iter().any(|candidate| candidate.name == name);
     // What starts from one is a search beside it, not one from nothing.
     let from_own = |name: &str| name.strip_suffix("_two_opt").is_some_and(own);
@@ -82,7 +82,8 @@ fn series(source: Source<'_>, optimise: &Optimise) -> Result<Vec<Series>, Figure
     }
     let sign = if optimise.goal == Goal::Minimise { 1.0 } else { -1.0 };
     let searched = |row: &usize| !names[*row].is_empty() && !own(&names[*row]) && !from_own(&names[*row]);
-    let fitness = |row: &usize| number(value, *row).filter(|fitness| fitness.is_finite()).map(|fitness| sign * fitness);
+    let fitness =
+        |row: &usize| value.data.number(*row).filter(|fitness| fitness.is_finite()).map(|fitness| sign * fitness);
     let best = (0..names.len())
         .filter(searched)
         .filter_map(|row| Some((row, fitness(&row)?)))

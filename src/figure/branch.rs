@@ -7,7 +7,6 @@ use crate::table::{Column, Data};
 
 use super::error::FigureError;
 use super::geometry::{Point, Rect};
-use super::group::number;
 use super::line::{Sample, Source};
 use super::style::MARKER;
 
@@ -35,9 +34,9 @@ impl<'a> Branches<'a> {
 
     /// The stretches of these rows' lines that are stable, or those that are not: stable is what lies between two stable points.
     pub(super) fn samples(&self, x: &Column, y: &Column, rows: &[usize], stability: Stability) -> Vec<Sample> {
-        let at = |row: usize| Some(Sample::bare(number(x, row)?, number(y, row)?));
+        let at = |row: usize| Some(Sample::bare(x.data.number(row)?, y.data.number(row)?));
         let mut samples = Vec::new();
-        let is_on = |a: usize, b: usize| number(self.branch, a) == number(self.branch, b);
+        let is_on = |a: usize, b: usize| self.branch.data.number(a) == self.branch.data.number(b);
         for part in rows.chunk_by(|a, b| is_on(*a, *b)) {
             // A branch of one point is a point.
             if let [alone] = *part
@@ -117,7 +116,7 @@ pub(super) fn special_points(source: Source<'_>, panel: &experiment::Panel) -> R
         let y = source.column(&axis.column)?;
         points.extend((0..source.table.rows()).filter_map(|row| {
             let kind = Special::ALL.into_iter().find(|kind| Some(kind.word()) == word(kinds, row))?;
-            let (x, y) = (number(x, row)?, number(y, row)?);
+            let (x, y) = (x.data.number(row)?, y.data.number(row)?);
             (x.is_finite() && y.is_finite()).then_some(SpecialPoint { x, y, kind })
         }));
     }

@@ -2,20 +2,10 @@
 
 use crate::experiment::BasinColumn;
 use crate::measure::Measure;
-use crate::table::{Column, Data};
+use crate::table::Column;
 use crate::text::words;
 
 use super::label;
-
-/// The number in a cell, if it holds one.
-#[expect(clippy::cast_precision_loss, reason = "counts of events stay far below 2^53")]
-pub(super) fn number(column: &Column, row: usize) -> Option<f64> {
-    match &column.data {
-        Data::Float(cells) => cells.get(row).copied(),
-        Data::Int(cells) => cells.get(row).map(|&count| count as f64),
-        Data::Text(_) | Data::FloatList(_) => None,
-    }
-}
 
 /// Whether a column names what came out, as a kind of motion: no sweep sets it.
 pub(super) fn is_outcome(column: &Column) -> bool {

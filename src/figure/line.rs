@@ -10,7 +10,7 @@ use crate::table::{Column, Data, Table};
 
 use super::branch::Branches;
 use super::error::FigureError;
-use super::group::{Group, is_outcome, number};
+use super::group::{Group, is_outcome};
 use super::style::Look;
 use super::{label, searches};
 
@@ -326,7 +326,7 @@ fn over_first(curves: &mut [Curve]) {
 fn holds(column: &Column, row: usize) -> bool {
     match &column.data {
         Data::FloatList(cells) => cells.get(row).is_some_and(|cell| !cell.is_empty()),
-        _ => number(column, row).is_some_and(f64::is_finite),
+        _ => column.data.number(row).is_some_and(f64::is_finite),
     }
 }
 
@@ -360,7 +360,7 @@ fn fill(
         }
         (Data::Float(_) | Data::Int(_), Data::FloatList(values)) => {
             for &row in rows {
-                let Some(at) = number(x, row).filter(|at| at.is_finite()) else { continue };
+                let Some(at) = x.data.number(row).filter(|at| at.is_finite()) else { continue };
                 curve.samples.extend(values.get(row).into_iter().flatten().map(|&y| Sample::bare(at, y)));
             }
             Ok(())
@@ -370,9 +370,9 @@ fn fill(
         }
         _ => {
             for &row in rows {
-                let (Some(at), Some(y)) = (number(x, row), number(y, row)) else { continue };
+                let (Some(at), Some(y)) = (x.data.number(row), y.data.number(row)) else { continue };
                 if at.is_finite() {
-                    curve.samples.push(Sample::within(at, y, spread.and_then(|spread| number(spread, row))));
+                    curve.samples.push(Sample::within(at, y, spread.and_then(|spread| spread.data.number(row))));
                 } else if x.name == SEED && y.is_finite() {
                     curve.at_infinity = Some(AtInfinity { y, label: curve.name.full() });
                 } else if at == f64::INFINITY && y.is_finite() {
@@ -396,7 +396,7 @@ impl Group {
             let differ = || by.iter().enumerate().filter(|(index, _)| other.words[*index] != self.words[*index]);
             differ().next().is_some() && differ().all(|(_, column)| is_outcome(column))
         };
-        groups.iter().filter(beside).flat_map(|other| &other.rows).filter_map(|&row| number(x, row)).collect()
+        groups.iter().filter(beside).flat_map(|other| &other.rows).filter_map(|&row| x.data.number(row)).collect()
     }
 
     /// For each `by` column that varies: which of how many levels this group has.

@@ -8,7 +8,7 @@ use super::axis::{Axis, Extent, Room};
 use super::colormap::{Shades, Steps};
 use super::error::FigureError;
 use super::field::{Field, Spot, cell_edges};
-use super::group::{Group, number};
+use super::group::Group;
 use super::label;
 use super::line::Source;
 
@@ -51,7 +51,7 @@ pub(super) struct Map<'a> {
 /// The largest standard deviation of an ensemble over its mean, where some motion is chaotic.
 fn largest_spread(source: Source<'_>, value: &Column) -> Option<f64> {
     let spread = source.table.column(&format!("{}_spread", value.name))?;
-    let share = |row: usize| Some((number(spread, row)? / number(value, row)?).abs());
+    let share = |row: usize| Some((spread.data.number(row)? / value.data.number(row)?).abs());
     let shares = (0..source.table.rows()).filter_map(share);
     shares.filter(|share| share.is_finite() && *share > 0.0).reduce(f64::max)
 }
@@ -215,7 +215,7 @@ impl Columns<'_> {
             return Ok(filled.into_iter().flat_map(of_row).collect());
         }
         let spot = |&row: &usize| {
-            Some(Spot { x: number(self.x, row)?, y: number(self.y, row)?, value: number(self.value, row)? })
+            Some(Spot { x: self.x.data.number(row)?, y: self.y.data.number(row)?, value: self.value.data.number(row)? })
         };
         Ok(rows.iter().filter_map(spot).collect())
     }
@@ -225,7 +225,7 @@ impl Columns<'_> {
 fn marks(x: &Column, y: &Column, rows: &[usize]) -> Vec<Place> {
     let mut marks: Vec<Place> = Vec::new();
     for &row in rows {
-        let (Some(x), Some(y)) = (number(x, row), number(y, row)) else { continue };
+        let (Some(x), Some(y)) = (x.data.number(row), y.data.number(row)) else { continue };
         let mark = Place { x, y };
         if x.is_finite() && y.is_finite() && !marks.contains(&mark) {
             marks.push(mark);

@@ -4,7 +4,7 @@ use super::attributes::Attributes;
 use super::canvas::{Pen, Sheet};
 use super::error::FigureError;
 use super::geometry::{Point, Rect};
-use super::group::{Group, number};
+use super::group::Group;
 use super::line::{Curve, Source};
 use super::panel::Panel;
 use super::style::{GREY, GRID, KindOfMotion, Look, SPACE, TICK_TEXT};
@@ -46,7 +46,7 @@ pub(super) fn strips(
     let groups = Group::split(source.table.rows(), &by);
     let strip = |(at, group): (usize, &Group)| {
         let point = |&row: &usize| {
-            let at = number(x, row).filter(|at| at.is_finite())?;
+            let at = x.data.number(row).filter(|at| at.is_finite())?;
             Some((at, kinds.get(row)?.parse().ok()?))
         };
         let mut points: Vec<(f64, MotionKind)> = group.rows.iter().filter_map(point).collect();

@@ -54,16 +54,6 @@ pub(super) fn parameter<'t>(table: &'t Table, name: &str) -> Result<Found<'t>, A
     Ok(found)
 }
 
-/// A number of a column of numbers.
-pub(super) fn number(data: &Data, row: usize) -> Option<f64> {
-    match data {
-        Data::Float(cells) => cells.get(row).copied(),
-        #[expect(clippy::cast_precision_loss, reason = "counts are far below 2^53")]
-        Data::Int(cells) => cells.get(row).map(|&count| count as f64),
-        Data::Text(_) | Data::FloatList(_) => None,
-    }
-}
-
 /// Number of rows that every column has.
 pub(super) fn height(table: &Table) -> usize {
     table.columns.iter().map(|column| column.data.len()).min().unwrap_or(0)

@@ -57,11 +57,8 @@ pub(super) fn extremes(numbers: &[f64]) -> (f64, f64) {
 pub(super) fn numbers(table: &Table, column: usize, rows: &[usize]) -> Vec<f64> {
     let Some(column) = table.columns.get(column) else { return Vec::new() };
     let of_row = |row: usize| match &column.data {
-        Data::Float(cells) => cells.get(row).copied().into_iter().collect(),
-        #[expect(clippy::cast_precision_loss, reason = "counts are far below 2^53")]
-        Data::Int(cells) => cells.get(row).map(|&count| count as f64).into_iter().collect(),
         Data::FloatList(lists) => lists.get(row).cloned().unwrap_or_default(),
-        Data::Text(_) => Vec::new(),
+        data => data.number(row).into_iter().collect(),
     };
     rows.iter().flat_map(|&row| of_row(row)).collect()
 }

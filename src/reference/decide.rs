@@ -17,7 +17,7 @@ use super::tally::{Decision, Outcome, Tally, strict};
 use super::text::{
     apart as told_apart, in_scale_of, listed, percent, place, significant, symbol, with_error_in_scale_of, with_unit,
 };
-use super::view::{Absence, Cell, Line, View};
+use super::view::{Absence, Cell, Line, Source, View};
 use super::words;
 use crate::measure::column_words;
 
@@ -58,7 +58,7 @@ pub(crate) fn decide(predicate: &Predicate, view: &View<'_>) -> Result<Decision,
 }
 
 fn trend(claim: &Trend, view: &View<'_>) -> Result<Decision, Absence> {
-    let rows = view.rows(super::view::Source { table: None, rows: &view.given }, Some(&claim.along))?;
+    let rows = view.rows(Source { table: None, rows: &view.given }, Some(&claim.along))?;
     let levels = view.levels(&rows, &claim.along)?;
     let along_unit = view.unit(&rows, &claim.along)?;
     let numbers =

@@ -1,7 +1,10 @@
 //! Takes numbers out of tables. Each comes with its own error, to which the grid of the sweep belongs: a top is known to lie
 //! between its neighbours, no better.
 
-use super::extraction::{Along, Cells, Direction, Extraction, Meeting, NearestPassage, Parting, Side};
+use super::extraction::{
+    Along, AtMaximum, Cells, Crossing, Difference, Direction, End, Extraction, Lead, Meeting, NearestPassage, Parting,
+    Quotient, Side,
+};
 use super::line::{Position, common, lines};
 use super::selection::same;
 use super::text::{percent, with_unit};
@@ -32,6 +35,10 @@ impl Extracted {
         Self { value: position.x, run: position.u, spread: 0.0, unit, scale: None }
     }
 
+    fn exact(value: f64, unit: String) -> Self {
+        Self { value, run: 0.0, spread: 0.0, unit, scale: None }
+    }
+
     fn times(self, factor: f64) -> Self {
         let size = factor.abs();
         Self {
@@ -47,154 +54,166 @@ impl Extracted {
 impl Extraction {
     /// Takes the number.
     pub(crate) fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
-        let line = |along: &Along| view.line(along.source(), &along.of, &along.over, None);
-        let at_top = |along: &Along, line: &Line| view.note_place(along.source(), &along.over, line.x[line.highest()]);
-        let at_optimum = |along: &Along, line: &Line| {
-            at_top(along, line);
-            view.note_end(line, line.highest());
-        };
-        Ok(match self {
-            Self::Number(x) => Extracted { value: *x, run: 0.0, spread: 0.0, unit: String::new(), scale: None },
-            Self::Cell(cells) => {
-                let rows = view.rows(cells.source(), None)?;
-                let all = view.cells(&rows, &cells.of)?;
-                let &[cell] = all.as_slice() else {
-                    return Err(Absence::Broken(format!(
-                        "{} rows where one is meant: `where` must say which",
-                        rows.count()
-                    )));
-                };
-                Extracted::cell(cell, view.unit(&rows, &cells.of)?)
-            }
-            Self::Mean(cells) => {
-                let rows = view.rows(cells.source(), None)?;
-                let all = view.cells(&rows, &cells.of)?;
-                #[expect(clippy::cast_precision_loss, reason = "row counts are far below 2^53")]
-                let n = all.len() as f64;
-                let quadrature = |part: fn(&Cell) -> f64| all.iter().map(|c| part(c) * part(c)).sum::<f64>().sqrt() / n;
-                Extracted {
-                    value: all.iter().map(|cell| cell.value).sum::<f64>() / n,
-                    run: quadrature(|cell| cell.run),
-                    spread: quadrature(|cell| cell.spread),
-                    unit: view.unit(&rows, &cells.of)?.into(),
-                    scale: None,
-                }
-            }
-            Self::Maximum(along) => {
-                let line = line(along)?;
-                at_top(along, &line);
-                Extracted::cell(line.maximum(), &line.unit)
-            }
-            Self::Minimum(along) => {
-                let line = line(along)?.inverted();
-                at_top(along, &line);
-                Extracted::cell(line.maximum(), &line.unit).times(-1.0)
-            }
-            Self::Argmax(along) => {
-                let line = line(along)?;
-                at_optimum(along, &line);
-                Extracted::place(line.top()?, line.over_unit)
-            }
-            Self::Argmin(along) => {
-                let line = line(along)?.inverted();
-                at_optimum(along, &line);
-                Extracted::place(line.top()?, line.over_unit)
-            }
-            Self::AtMaximum(word) => {
-                let line = view.line(word.source(), &word.of, &word.over, None)?;
-                let other = view.line(word.source(), &word.read, &word.over, None)?;
-                let top = line.x[line.highest()];
-                view.note_place(word.source(), &word.over, top);
-                view.note_end(&line, line.highest());
-                let at = other.x.iter().position(|&x| same(x, top));
-                let at = at.ok_or_else(|| Absence::NoRow(format!("no `{}` at the maximum", word.read)))?;
-                Extracted::cell(other.y[at], &other.unit)
-            }
-            Self::End(word) => {
-                let line = view.line(word.source(), &word.of, &word.over, None)?;
-                let at = if word.end == Side::Low { 0 } else { line.x.len() - 1 };
-                Extracted::cell(line.y[at], &line.unit)
-            }
-            Self::Crossing(word) => {
-                let line = view.line(word.source(), &word.of, &word.over, None)?;
-                let unit = line.unit.clone();
-                let (line, level) = match word.direction {
-                    Direction::Increasing => (line, word.level),
-                    Direction::Decreasing => (line.inverted(), -word.level),
-                };
-                let (_, position) = line.crossing_up(level).ok_or_else(|| {
-                    Absence::Nowhere(format!(
-                        "the {} does not cross {}",
-                        column_words(&word.of),
-                        with_unit(word.level, 4, &unit)
-                    ))
-                })?;
-                Extracted::place(position, line.over_unit)
-            }
+        match self {
+            Self::Number(x) => Ok(Extracted::exact(*x, String::new())),
+            Self::Cell(cells) => only(cells, view),
+            Self::Mean(cells) => mean(cells, view),
+            Self::Largest(cells) => extreme(cells, view, 1.0),
+            Self::Smallest(cells) => extreme(cells, view, -1.0),
+            Self::PathMaximum(cells) => path_extreme(cells, view, f64::max),
+            Self::PathMinimum(cells) => path_extreme(cells, view, f64::min),
+            Self::Maximum(along) => Ok(along.highest(view, along.line(view)?)),
+            Self::Minimum(along) => Ok(along.highest(view, along.line(view)?.inverted()).times(-1.0)),
+            Self::Argmax(along) => along.place_of_highest(view, along.line(view)?),
+            Self::Argmin(along) => along.place_of_highest(view, along.line(view)?.inverted()),
+            Self::AtMaximum(word) => word.take(view),
+            Self::End(word) => word.take(view),
+            Self::Crossing(word) => word.take(view),
             Self::FirstAbove(word) => {
                 let line = view.line(word.source(), &word.of, &word.over, None)?;
-                Extracted::place(line.onset(word.level)?.1, line.over_unit)
+                Ok(Extracted::place(line.onset(word.level)?.1, line.over_unit))
             }
-            Self::Parting(word) => word.take(view)?,
-            Self::Meeting(word) => word.take(view)?,
+            Self::Parting(word) => word.take(view),
+            Self::Meeting(word) => word.take(view),
             Self::LargestStepBack(word) => {
                 let line = view.line(word.source(), &word.of, &word.over, None)?;
                 let line = if word.direction == Direction::Increasing { line } else { line.inverted() };
-                Extracted::cell(line.largest_fall(), &line.unit)
+                Ok(Extracted::cell(line.largest_fall(), &line.unit))
             }
             Self::LargestLead(word) => {
-                let lead = word.pair().lead(view, word.source())?;
-                view.note_place(word.source(), &word.over, lead.x[lead.highest()]);
-                Extracted::cell(lead.maximum(), &lead.unit)
+                let lead = word.line(view)?;
+                Ok(Extracted::cell(lead.maximum(), &lead.unit))
             }
             Self::ArgmaxLead(word) => {
-                let lead = word.pair().lead(view, word.source())?;
-                view.note_place(word.source(), &word.over, lead.x[lead.highest()]);
+                let lead = word.line(view)?;
                 view.note_end(&lead, lead.highest());
-                Extracted::place(lead.top()?, lead.over_unit)
+                Ok(Extracted::place(lead.top()?, lead.over_unit))
             }
-            Self::NearestPassage(word) => word.take(view)?,
-            Self::Largest(cells) => extreme(cells, view, 1.0)?,
-            Self::Smallest(cells) => extreme(cells, view, -1.0)?,
-            Self::PathMaximum(cells) => path_extreme(cells, view, f64::max)?,
-            Self::PathMinimum(cells) => path_extreme(cells, view, f64::min)?,
-            Self::Interpolated(word) => word.take(view)?,
-            Self::MeanOver(word) => word.mean(view)?,
-            Self::StandardDeviationOver(word) => word.standard_deviation(view)?,
-            Self::Peak(peak) => peak.take(view)?,
-            Self::Ratio(quotient) => {
-                let (of, to) = (quotient.of.take(view)?, quotient.to.take(view)?);
-                if of.unit != to.unit {
-                    return Err(Absence::Broken(format!("a ratio of `{}` to `{}`", of.unit, to.unit)));
-                }
-                let value = of.value / to.value;
-                if !value.is_finite() {
-                    return Err(Absence::Broken("a ratio to zero".into()));
-                }
-                let both = |a: f64, b: f64| libm::hypot(a, value * b) / to.value.abs();
-                Extracted {
-                    value,
-                    run: both(of.run, to.run),
-                    spread: both(of.spread, to.spread),
-                    unit: String::new(),
-                    scale: None,
-                }
-            }
-            Self::Difference(difference) => {
-                let (of, less) = (difference.of.take(view)?, difference.less.take(view)?);
-                if of.unit != less.unit {
-                    return Err(Absence::Broken(format!("a difference of `{}` and `{}`", of.unit, less.unit)));
-                }
-                Extracted {
-                    value: of.value - less.value,
-                    run: libm::hypot(of.run, less.run),
-                    spread: libm::hypot(of.spread, less.spread),
-                    unit: of.unit,
-                    scale: None,
-                }
-            }
-            Self::Times(times) => times.of.take(view)?.times(times.factor),
-        })
+            Self::NearestPassage(word) => word.take(view),
+            Self::Interpolated(word) => word.take(view),
+            Self::MeanOver(word) => word.mean(view),
+            Self::StandardDeviationOver(word) => word.standard_deviation(view),
+            Self::Peak(peak) => peak.take(view),
+            Self::Ratio(quotient) => quotient.take(view),
+            Self::Difference(difference) => difference.take(view),
+            Self::Times(times) => Ok(times.of.take(view)?.times(times.factor)),
+        }
+    }
+}
+
+/// The cell of the one row that is meant.
+fn only(cells: &Cells, view: &View<'_>) -> Result<Extracted, Absence> {
+    let rows = view.rows(cells.source(), None)?;
+    let all = view.cells(&rows, &cells.of)?;
+    let &[cell] = all.as_slice() else {
+        return Err(Absence::Broken(format!("{} rows where one is meant: `where` must say which", rows.count())));
+    };
+    Ok(Extracted::cell(cell, view.unit(&rows, &cells.of)?))
+}
+
+fn mean(cells: &Cells, view: &View<'_>) -> Result<Extracted, Absence> {
+    let rows = view.rows(cells.source(), None)?;
+    let all = view.cells(&rows, &cells.of)?;
+    #[expect(clippy::cast_precision_loss, reason = "row counts are far below 2^53")]
+    let n = all.len() as f64;
+    let quadrature = |part: fn(&Cell) -> f64| all.iter().map(|c| part(c) * part(c)).sum::<f64>().sqrt() / n;
+    Ok(Extracted {
+        value: all.iter().map(|cell| cell.value).sum::<f64>() / n,
+        run: quadrature(|cell| cell.run),
+        spread: quadrature(|cell| cell.spread),
+        unit: view.unit(&rows, &cells.of)?.into(),
+        scale: None,
+    })
+}
+
+impl Along {
+    fn line(&self, view: &View<'_>) -> Result<Line, Absence> {
+        view.line(self.source(), &self.of, &self.over, None)
+    }
+
+    /// The highest value of a line along it.
+    fn highest(&self, view: &View<'_>, line: Line) -> Extracted {
+        view.note_place(self.source(), &self.over, line.x[line.highest()]);
+        Extracted::cell(line.maximum(), &line.unit)
+    }
+
+    fn place_of_highest(&self, view: &View<'_>, line: Line) -> Result<Extracted, Absence> {
+        view.note_place(self.source(), &self.over, line.x[line.highest()]);
+        view.note_end(&line, line.highest());
+        Ok(Extracted::place(line.top()?, line.over_unit))
+    }
+}
+
+impl AtMaximum {
+    fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
+        let line = view.line(self.source(), &self.of, &self.over, None)?;
+        let other = view.line(self.source(), &self.read, &self.over, None)?;
+        let top = line.x[line.highest()];
+        view.note_place(self.source(), &self.over, top);
+        view.note_end(&line, line.highest());
+        let at = other.x.iter().position(|&x| same(x, top));
+        let at = at.ok_or_else(|| Absence::NoRow(format!("no `{}` at the maximum", self.read)))?;
+        Ok(Extracted::cell(other.y[at], &other.unit))
+    }
+}
+
+impl End {
+    fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
+        let line = view.line(self.source(), &self.of, &self.over, None)?;
+        let at = if self.end == Side::Low { 0 } else { line.x.len() - 1 };
+        Ok(Extracted::cell(line.y[at], &line.unit))
+    }
+}
+
+impl Crossing {
+    fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
+        let line = view.line(self.source(), &self.of, &self.over, None)?;
+        let unit = line.unit.clone();
+        let (line, level) = match self.direction {
+            Direction::Increasing => (line, self.level),
+            Direction::Decreasing => (line.inverted(), -self.level),
+        };
+        let (_, position) = line.crossing_up(level).ok_or_else(|| {
+            let (of, level) = (column_words(&self.of), with_unit(self.level, 4, &unit));
+            Absence::Nowhere(format!("the {of} does not cross {level}"))
+        })?;
+        Ok(Extracted::place(position, line.over_unit))
+    }
+}
+
+impl Lead {
+    /// The lead of one line over the other.
+    fn line(&self, view: &View<'_>) -> Result<Line, Absence> {
+        let lead = self.pair().lead(view, self.source())?;
+        view.note_place(self.source(), &self.over, lead.x[lead.highest()]);
+        Ok(lead)
+    }
+}
+
+impl Quotient {
+    fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
+        let (of, to) = (self.of.take(view)?, self.to.take(view)?);
+        if of.unit != to.unit {
+            return Err(Absence::Broken(format!("a ratio of `{}` to `{}`", of.unit, to.unit)));
+        }
+        let value = of.value / to.value;
+        if !value.is_finite() {
+            return Err(Absence::Broken("a ratio to zero".into()));
+        }
+        let both = |a: f64, b: f64| libm::hypot(a, value * b) / to.value.abs();
+        let (run, spread) = (both(of.run, to.run), both(of.spread, to.spread));
+        Ok(Extracted { value, run, spread, unit: String::new(), scale: None })
+    }
+}
+
+impl Difference {
+    fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
+        let (of, less) = (self.of.take(view)?, self.less.take(view)?);
+        if of.unit != less.unit {
+            return Err(Absence::Broken(format!("a difference of `{}` and `{}`", of.unit, less.unit)));
+        }
+        let (run, spread) = (libm::hypot(of.run, less.run), libm::hypot(of.spread, less.spread));
+        Ok(Extracted { value: of.value - less.value, run, spread, unit: of.unit, scale: None })
     }
 }
 
@@ -234,7 +253,7 @@ fn path_extreme(cells: &Cells, view: &View<'_>, pick: fn(f64, f64) -> f64) -> Re
     let path = view.path(&rows, &cells.of)?;
     let value = path.iter().copied().reduce(pick);
     let value = value.ok_or_else(|| Absence::NoRow(format!("the time history `{}` is empty", cells.of)))?;
-    Ok(Extracted { value, run: 0.0, spread: 0.0, unit: view.unit(&rows, &cells.of)?.into(), scale: None })
+    Ok(Extracted::exact(value, view.unit(&rows, &cells.of)?.into()))
 }
 
 /// Standard errors by which two means have to differ. A sweep compares them at a hundred points: two would not do.
@@ -262,7 +281,7 @@ impl Parting {
             }
             Some(i) => {
                 let (x, before) = (shared[i].0, shared[i - 1].0);
-                Ok(Extracted { value: x, run: (x - before) / 2.0, spread: 0.0, unit, scale: None })
+                Ok(Extracted::place(Position { x, u: (x - before) / 2.0 }, unit))
             }
         }
     }
@@ -282,14 +301,8 @@ impl Meeting {
         };
         let (from, to) = (lead(left), lead(right));
         let share = if from == to { 0.0 } else { from / (from - to) };
-        let value = before + share * (after - before);
-        Ok(Extracted {
-            value,
-            run: (after - before) / 2.0,
-            spread: 0.0,
-            unit: both[0].1.over_unit.clone(),
-            scale: None,
-        })
+        let place = Position { x: before + share * (after - before), u: (after - before) / 2.0 };
+        Ok(Extracted::place(place, both[0].1.over_unit.clone()))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Features of lines: where the top is and how well the grid knows it, where two lines part, how many peaks there are.
 
+use super::compare::COVERAGE;
 use super::selection::{Allowed, same};
 use super::text::{place, with_unit};
 use super::view::{Absence, Cell, Line, Source, View};
@@ -115,7 +116,7 @@ impl Line {
         let best = self.highest();
         let may_be_top = |i: &usize| {
             let (cell, top) = (self.y[*i], self.y[best]);
-            cell.value + 2.0 * libm::hypot(cell.run, top.run) >= top.value
+            cell.value + COVERAGE * libm::hypot(cell.run, top.run) >= top.value
         };
         let first = (0..=best).find(may_be_top).unwrap_or(best);
         let final_ = (best..=last).rev().find(may_be_top).unwrap_or(best);

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::columns::number;
 use super::text::{significant, symbol, with_unit};
 use super::view::{Place, RowsByTable, TableState, Tables};
 use crate::dynamics::MotionKind;
@@ -52,7 +51,7 @@ fn at(place: &Place, table: &Table) -> Option<String> {
 /// `periodic 1:2, largest multiplier 0.72`.
 fn in_words(table: &Table, row: usize) -> Option<String> {
     let kind: MotionKind = table.texts(&of_key(&Measure::Motion))?.get(row)?.parse().ok()?;
-    let cell = |name: String| number(&table.column(&name)?.data, row).filter(|x| x.is_finite());
+    let cell = |name: String| table.column(&name)?.data.number(row).filter(|x| x.is_finite());
     let exponent = of_key(&Measure::LyapunovExponent);
     let more = match kind {
         MotionKind::Periodic { .. } => cell(of_key(&Measure::LargestMultiplier))

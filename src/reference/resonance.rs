@@ -6,6 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::compare::COVERAGE;
 use super::extract::Extracted;
 use super::mapping::{Reads, mapping, word};
 use super::name::Column;
@@ -124,7 +125,7 @@ impl Peak {
         let stands_out = |&(x, prominence): &(f64, super::view::Cell)| {
             let at = line.x.partition_point(|&other| other < x);
             let enough = prominence.value >= self.prominence * line.y[at].value.abs();
-            (enough && prominence.value > 2.0 * prominence.run).then_some(at)
+            (enough && prominence.value > COVERAGE * prominence.run).then_some(at)
         };
         let peaks: Vec<usize> = line.prominences().iter().filter_map(stands_out).collect();
         let none = || Absence::Nowhere(format!("the {} has no peak", column_words(&self.of)));

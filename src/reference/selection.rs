@@ -72,8 +72,8 @@ impl Allowed {
                 Data::Float(cells) => text == "infinite" && cells[row] == f64::INFINITY,
                 Data::Int(_) | Data::FloatList(_) => false,
             },
-            Self::Number(number) => cell(data, row).is_some_and(|x| same(x, *number)),
-            Self::Range { from, to } => cell(data, row).is_some_and(|x| {
+            Self::Number(number) => data.number(row).is_some_and(|x| same(x, *number)),
+            Self::Range { from, to } => data.number(row).is_some_and(|x| {
                 from.is_none_or(|from| x >= from || same(x, from)) && to.is_none_or(|to| x <= to || same(x, to))
             }),
         }
@@ -84,15 +84,6 @@ impl Allowed {
 pub(crate) fn same(a: f64, b: f64) -> bool {
     // Infinite levels (a gap without ceiling) are equal to themselves only.
     a == b || (a.is_finite() && b.is_finite() && (a - b).abs() <= 1e-9 * a.abs().max(b.abs()))
-}
-
-fn cell(data: &Data, row: usize) -> Option<f64> {
-    match data {
-        Data::Float(cells) => Some(cells[row]),
-        #[expect(clippy::cast_precision_loss, reason = "counts are far below 2^53")]
-        Data::Int(cells) => Some(cells[row] as f64),
-        Data::Text(_) | Data::FloatList(_) => None,
-    }
 }
 
 impl fmt::Display for Selection {

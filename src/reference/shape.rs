@@ -1,6 +1,7 @@
 //! Claims about the shape of a line: monotone, straight, levelling off, its peaks and onsets.
 
 use super::claims::{GreatestAtEnd, LevelsOff, Linear, Monotone, Onsets, Part, Peaks};
+use super::compare::COVERAGE;
 use super::extraction::{Direction, Side};
 use super::tally::{Decision, Outcome, Tally};
 use super::text::{percent, place, symbol, with_unit};
@@ -140,9 +141,12 @@ pub(crate) fn peaks(claim: &Peaks, view: &View<'_>) -> Result<Decision, Absence>
     let line = view.line(claim.source(), &claim.of, &claim.over, None)?;
     let threshold = claim.prominence * line.range();
     let candidates = line.prominences();
-    let sure: Vec<f64> =
-        candidates.iter().filter(|(_, height)| height.value >= threshold + 2.0 * height.run).map(|(x, _)| *x).collect();
-    let possible = candidates.iter().filter(|(_, height)| height.value + 2.0 * height.run >= threshold).count();
+    let sure: Vec<f64> = candidates
+        .iter()
+        .filter(|(_, height)| height.value >= threshold + COVERAGE * height.run)
+        .map(|(x, _)| *x)
+        .collect();
+    let possible = candidates.iter().filter(|(_, height)| height.value + COVERAGE * height.run >= threshold).count();
     let at_least = claim.at_least.map_or(Outcome::Holds, |least| {
         if sure.len() >= least {
             Outcome::Holds

@@ -6,7 +6,7 @@
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::columns::{Found, find, find_if_any, height, labels, number, parameter};
+use super::columns::{Found, find, find_if_any, height, labels, parameter};
 use super::selection::{Allowed, Selection, same};
 use super::text::{known, significant, symbol, with_unit};
 use super::verdict::{NoTable, WhyNoTable};
@@ -276,13 +276,13 @@ impl<'a> View<'a> {
         self.note_all(rows, found, Role::Value);
         let errors = self.errors(rows, of)?;
         let error = |found: Option<Found<'_>>, none: f64, row: usize| {
-            found.map_or(none, |found| number(&found.column.data, row).unwrap_or(f64::NAN))
+            found.map_or(none, |found| found.column.data.number(row).unwrap_or(f64::NAN))
         };
         rows.indices
             .iter()
             .map(|&row| {
                 let broken = |what: &str| Absence::Broken(format!("`{of}` {what} in row {}", row + 1));
-                let value = number(&found.column.data, row).ok_or_else(|| broken("is no column of numbers"))?;
+                let value = found.column.data.number(row).ok_or_else(|| broken("is no column of numbers"))?;
                 let (own, spread) = (error(errors.own, 0.0, row), error(errors.spread, 0.0, row));
                 let members = error(errors.members, 1.0, row);
                 let has_error = own >= 0.0 && spread >= 0.0 && members >= 0.0;
@@ -310,7 +310,7 @@ impl<'a> View<'a> {
         let found = parameter(rows.table, name)?;
         self.note_all(rows, found, Role::Coordinate);
         let coordinate = |&row: &usize| {
-            let x = number(&found.column.data, row).filter(|x| x.is_finite());
+            let x = found.column.data.number(row).filter(|x| x.is_finite());
             x.ok_or_else(|| Absence::Broken(format!("`{name}` is no finite number in row {}", row + 1)))
         };
         rows.indices.iter().map(coordinate).collect()
@@ -338,7 +338,7 @@ impl<'a> View<'a> {
     pub(crate) fn line(&self, source: Source<'_>, of: &str, over: &str, by: Option<&str>) -> Result<Line, Absence> {
         let mut rows = self.rows(source, by)?;
         let along = parameter(rows.table, over)?;
-        let abscissa = |row: usize| number(&along.column.data, row).filter(|x| x.is_finite());
+        let abscissa = |row: usize| along.column.data.number(row).filter(|x| x.is_finite());
         rows.indices.retain(|&row| abscissa(row).is_some());
         if rows.indices.is_empty() {
             return Err(Absence::NoRow(format!("no row has a `{over}`")));
@@ -382,7 +382,7 @@ impl<'a> View<'a> {
             return Ok(words.into_iter().map(|word| Allowed::Text(word.clone())).collect());
         }
         let mut numbers: Vec<f64> =
-            rows.indices.iter().filter_map(|&row| number(data, row)).filter(|x| !x.is_nan()).collect();
+            rows.indices.iter().filter_map(|&row| data.number(row)).filter(|x| !x.is_nan()).collect();
         numbers.sort_by(f64::total_cmp);
         numbers.dedup_by(|a, b| same(*a, *b));
         Ok(numbers
@@ -454,7 +454,7 @@ impl<'a> View<'a> {
         // What was read a moment ago can be read again.
         let Ok(Rows { id, table, indices }) = self.rows(source, None) else { return };
         let Ok(along) = parameter(table, over) else { return };
-        let here = |row: &usize| number(&along.column.data, *row).is_some_and(|other| same(other, x));
+        let here = |row: &usize| along.column.data.number(*row).is_some_and(|other| same(other, x));
         let place = Place { table: id, over: over.to_owned(), x, rows: indices.into_iter().filter(here).collect() };
         let mut places = self.reads.places.borrow_mut();
         if !places.contains(&place) {

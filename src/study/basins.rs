@@ -5,18 +5,18 @@
 
 use rayon::prelude::*;
 
+use super::asked::asked;
 use super::evaluate::{Evaluate, Simulation, evaluate_guarded, guarded};
 use super::event::{Event, EventHandler};
 use super::job::{Job, jobs};
 use super::known_rows::KnownRows;
 use super::row_failure::RowFailure;
 use super::row_fingerprint::RowFingerprints;
-use super::run::{Finished, Task};
 use super::spent::Meter;
 use super::tabulate::Row;
 use super::tabulate_basins::{Basin, BasinRow, failures, read, table};
+use super::task::{Finished, Task};
 use super::variant::Variant;
-use super::work::asked;
 use crate::dynamics::{Allowance, MotionKind, is_interrupted};
 use crate::experiment::{Experiment, Rank, RowSource, Starts};
 use crate::measure::{Ending, Evaluated, FromStarts, Rigour, SolverChoice, TraceColumn};

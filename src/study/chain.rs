@@ -3,47 +3,17 @@
 //! A chain ends with its first row that has no numbers: what came after would hang together with nothing. The state at the end of a
 //! row is in no table, so that a chain is taken over from an earlier table as a whole or computed from its first row on.
 
-use std::collections::BTreeMap;
-
 use super::evaluate::Evaluate;
 use super::event::{Event, EventHandler};
 use super::job::{Job, evaluations};
 use super::known_rows::KnownRows;
+use super::row::computed;
 use super::row_failure::RowFailure;
 use super::row_fingerprint::RowFingerprints;
-use super::run::Task;
 use super::tabulate::{Outcome, Row};
-use super::work::computed;
+use super::task::Task;
 use crate::dynamics::{StartState, is_interrupted};
-use crate::experiment::Experiment;
 use crate::measure::Link;
-
-/// The rows of these jobs that are computed together, in their order: a chain, or one row. Rows that share another's numbers are
-/// left out.
-pub(super) fn units(experiment: &Experiment, jobs: &[Job]) -> Vec<Vec<usize>> {
-    let mut places = BTreeMap::new();
-    for (chain, cases) in experiment.chains().into_iter().enumerate() {
-        places.extend(cases.into_iter().enumerate().map(|(place, case)| (case, (chain, place))));
-    }
-    let mut units: Vec<Vec<usize>> = Vec::new();
-    let mut begun = BTreeMap::new();
-    for (row, job) in jobs.iter().enumerate().filter(|(_, job)| job.same_as.is_none()) {
-        match places.get(&job.case) {
-            None => units.push(vec![row]),
-            Some((chain, _)) => {
-                let unit = *begun.entry((job.variant, *chain)).or_insert(units.len());
-                match units.get_mut(unit) {
-                    Some(rows) => rows.push(row),
-                    None => units.push(vec![row]),
-                }
-            }
-        }
-    }
-    for rows in &mut units {
-        rows.sort_by_key(|row| places.get(&jobs[*row].case).map(|(_, place)| *place));
-    }
-    units
-}
 
 /// Computes the rows of a chain, or takes all of them over, and hands each over as soon as it is there.
 pub(super) fn run(

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-use super::chain::units;
-use super::job::{self, Job, evaluations, jobs};
+use super::asked::rigours_of_others;
+use super::job::{self, Job, evaluations, jobs, units};
 use super::known_rows::KnownRows;
 use super::layout::Layout;
 use super::plan::Item;
@@ -11,7 +11,6 @@ use super::refine;
 use super::row_failure::RowFailure;
 use super::row_fingerprint::RowFingerprints;
 use super::spent::Spent;
-use super::work::rigours_of_others;
 use crate::experiment::{Case, Experiment, RowSource};
 use crate::measure::Rigour;
 

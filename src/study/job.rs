@@ -63,6 +63,33 @@ pub(super) fn jobs(experiment: &Experiment, variants: &[Variant]) -> Vec<Job> {
     jobs
 }
 
+/// The rows of these jobs that are computed together, in their order: a chain, or one row. Rows that share another's numbers are
+/// left out.
+pub(super) fn units(experiment: &Experiment, jobs: &[Job]) -> Vec<Vec<usize>> {
+    let mut places = BTreeMap::new();
+    for (chain, cases) in experiment.chains().into_iter().enumerate() {
+        places.extend(cases.into_iter().enumerate().map(|(place, case)| (case, (chain, place))));
+    }
+    let mut units: Vec<Vec<usize>> = Vec::new();
+    let mut begun = BTreeMap::new();
+    for (row, job) in jobs.iter().enumerate().filter(|(_, job)| job.same_as.is_none()) {
+        match places.get(&job.case) {
+            None => units.push(vec![row]),
+            Some((chain, _)) => {
+                let unit = *begun.entry((job.variant, *chain)).or_insert(units.len());
+                match units.get_mut(unit) {
+                    Some(rows) => rows.push(row),
+                    None => units.push(vec![row]),
+                }
+            }
+        }
+    }
+    for rows in &mut units {
+        rows.sort_by_key(|row| places.get(&jobs[*row].case).map(|(_, place)| *place));
+    }
+    units
+}
+
 /// The row of a case by which its curve is refined: its first solver at the baseline.
 pub(super) fn first_of(case: &Case) -> Job {
     let solver = case.solvers.first().copied().unwrap_or(SolverChoice::EventDriven);
@@ -76,7 +103,7 @@ pub(super) fn evaluations(experiment: &Experiment, job: &Job) -> u64 {
         (None, None) => 1,
         (Some(maximise), None) => {
             // The point of the baseline is simulated once more, as a result.
-            maximise.grid.len() as u64 + maximise.bisections() + u64::from(job.variant == 0)
+            maximise.grid.len() as u64 + maximise.points_after_grid() + u64::from(job.variant == 0)
         }
     }
 }
@@ -84,7 +111,8 @@ pub(super) fn evaluations(experiment: &Experiment, job: &Job) -> u64 {
 /// Runs behind a row of the table, the members of an ensemble and the points of a search for gaps not counted.
 #[must_use]
 pub fn runs_of_a_row(experiment: &Experiment) -> u64 {
-    let points = experiment.maximise.as_ref().map_or(1, |maximise| maximise.grid.len() as u64 + maximise.bisections());
+    let points =
+        experiment.maximise.as_ref().map_or(1, |maximise| maximise.grid.len() as u64 + maximise.points_after_grid());
     points * (experiment.mean_over.len() as u64).max(1)
 }
 

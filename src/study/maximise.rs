@@ -157,7 +157,7 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
         let mut below = before;
         let mut is_chaotic = tried[first - 1..=first].iter().any(|one| one.evaluated.may_be_chaotic());
         let mut above = tried.swap_remove(first);
-        for _ in 0..self.maximise.bisections() {
+        for _ in 0..self.maximise.points_after_grid() {
             let at = between(below, above.at);
             if (above.at - below).abs() <= KNOWN * above.at.abs() || at <= below || at >= above.at {
                 break;

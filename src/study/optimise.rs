@@ -2,29 +2,29 @@
 //! candidate evaluated once more as a result.
 //!
 //! A search sees one run for each setting, not an ensemble: ten times as many evaluations are worth more to it than the
-//! mean of an ensemble. Where the motion is chaotic it may so find luck, and the ensemble of the result says whether it did. What
+//! mean of an ensemble. Where the motion is chaotic a search may pick a lucky run; the ensemble of the result shows whether it did. What
 //! goes on from the best candidate, a descent or a landscape, therefore begins at the one that is best as a result.
 
 use cpu_time::ThreadTime;
 use rayon::prelude::*;
 
-use super::evaluate::{Array, Evaluate, Simulation, guarded};
+use super::candidate_results::{Results, evaluate_all};
+use super::evaluate::Evaluate;
 use super::event::{Event, EventHandler};
+use super::fitness::{Fitness, Step};
 use super::journal::{Journal, Known};
-use super::known_rows::KnownRows;
-use super::mean::{mean, measures_of_each};
+use super::mean::measures_of_each;
 use super::row_failure::{RowFailure, SearchError};
-use super::run::{Finished, Task};
 use super::tabulate_candidates::{AlongGap, Candidate, failures, table};
+use super::task::{Finished, Task};
 use super::variant::Variant;
 use crate::dynamics::is_interrupted;
-use crate::experiment::{Experiment, Goal, MeanRatio, Optimise, Recipe, Search, SearchKind, SearchSpacing};
-use crate::measure::{Evaluated, Measure, Measured, Rigour};
+use crate::experiment::{Experiment, Goal, Optimise, Search, SearchKind, SearchSpacing};
+use crate::measure::{Measured, Rigour};
 use crate::optimise::{
     Batch, Bounds, CmaEs, Dense, Found, Genetic, GeneticSettings, Optimiser, Score, Slope, Spacing, Stalled, Stopping,
     Wanted, dense, minimise, polish, sections, two_opt,
 };
-use crate::table::Table;
 use crate::text::words;
 
 /// Points between two looks at the least score, where only that is wanted.
@@ -51,73 +51,6 @@ pub(super) fn evaluations(optimise: &Optimise, variants: &[Variant]) -> u64 {
     optimise.most_evaluations().saturating_add((candidates(optimise) * variants.len()) as u64)
 }
 
-/// The array under each setting that fitness is a mean over, ready for other gaps.
-struct Fitness<'a> {
-    arrays: Vec<Box<dyn Array + 'a>>,
-    wanted: &'a [Measure],
-    measures: &'a [Measure],
-    ratio: MeanRatio,
-}
-
-impl<'a> Fitness<'a> {
-    fn new(
-        evaluate: &'a impl Evaluate,
-        experiment: &'a Experiment,
-        optimise: &Optimise,
-        variant: &'a Variant,
-        recipes: &'a [Recipe],
-        measures: &'a [Measure],
-    ) -> Result<Self, RowFailure> {
-        let ready = |recipe: &'a Recipe| {
-            let simulation = Simulation::step(experiment, recipe, &variant.assumptions, measures);
-            guarded(|| evaluate.array(simulation, optimise.gaps))
-        };
-        let arrays = recipes.iter().map(ready).collect::<Result<_, _>>()?;
-        let ratio = experiment.recipe.mean_ratio_under(&variant.assumptions)?;
-        Ok(Self { arrays, wanted: &experiment.measures, measures, ratio })
-    }
-
-    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, RowFailure> {
-        let each = self.arrays.iter().map(|array| guarded(|| array.evaluate(gaps, rigour)));
-        Ok(mean(self.wanted, self.measures, self.ratio, &each.collect::<Result<Vec<_>, _>>()?))
-    }
-
-    /// One step of a search: the mean of the measure at `index`, which is never negative, or part of it once that alone exceeds `limit`.
-    /// Sums of such numbers never fall, rounding included.
-    fn step(&self, gaps: &[f64], index: usize, limit: f64) -> Result<Step, RowFailure> {
-        let mut each = Vec::with_capacity(self.arrays.len());
-        for array in &self.arrays {
-            each.push(guarded(|| array.evaluate(gaps, Rigour::Step))?);
-            let sum: f64 = each.iter().map(|one| one.measured[index].value).sum();
-            let part = sum / self.arrays.len() as f64;
-            if each.len() < self.arrays.len() && part > limit {
-                return Ok(Step::Above(part));
-            }
-        }
-        Ok(Step::At(mean(self.wanted, self.measures, self.ratio, &each).measured[index].value))
-    }
-
-    /// The mean over the settings and its derivatives; `None` if that of one setting has none.
-    fn slope(&self, gaps: &[f64], measure: Measure) -> Result<Option<Slope>, RowFailure> {
-        let one = |array: &(dyn Array + 'a)| guarded(|| array.slope(gaps, measure));
-        let each = self.arrays.par_iter().map(|array| one(array.as_ref())).collect::<Result<Vec<_>, _>>()?;
-        let Some(each) = each.into_iter().collect::<Option<Vec<Slope>>>() else { return Ok(None) };
-        let count = each.len() as f64;
-        let value = each.iter().map(|slope| slope.value).sum::<f64>() / count;
-        let by = |i: usize| each.iter().map(|slope| slope.gradient[i]).sum::<f64>() / count;
-        Ok(Some(Slope { value, gradient: (0..gaps.len()).map(by).collect() }))
-    }
-}
-
-/// What a step of a search came to.
-#[derive(Debug, Clone, Copy)]
-enum Step {
-    /// The fitness.
-    At(f64),
-    /// A bound below it that was enough.
-    Above(f64),
-}
-
 /// The searches of one optimisation.
 struct Searches<'a> {
     experiment: &'a Experiment,
@@ -136,17 +69,13 @@ struct Searches<'a> {
     results: Results,
 }
 
-/// What came of gaps as a result, under the assumptions in force.
-type Results = Vec<(Vec<f64>, Result<Evaluated, RowFailure>)>;
-
 /// Runs it.
 pub(super) fn run_optimisation(task: Task<'_>, evaluate: &impl Evaluate, handler: &dyn EventHandler) -> Finished {
     let Task { experiment, variants, metadata, .. } = task;
-    if let Some(whole) = task.known.and_then(KnownRows::whole) {
+    if let Some(finished) = task.known_whole() {
         let count = experiment.optimise.as_ref().map_or(0, |optimise| evaluations(optimise, variants));
         handler.on_event(&Event::Simulated { experiment: &experiment.id, count });
-        // Its title may have changed since.
-        return Finished { table: Table { metadata: metadata.clone(), ..whole.clone() }, ..Finished::default() };
+        return finished;
     }
     let Searched { candidates, results, spent } = found(task, evaluate, handler).unwrap_or_else(|reason| Searched {
         candidates: vec![Candidate::failed(reason)],
@@ -503,56 +432,4 @@ fn spaced(spacing: SearchSpacing) -> Spacing {
 fn describe(kind: SearchKind, seed: Option<u32>) -> String {
     let name = words::of_level("candidate", &words::of_key(&kind));
     seed.map_or(name.clone(), |seed| format!("{name}, seed {seed}"))
-}
-
-/// Every candidate as a result, unless that is `known`, and as a variant under other values.
-fn evaluate_all(
-    task: Task<'_>,
-    evaluate: &impl Evaluate,
-    candidates: Vec<Candidate>,
-    known: &Results,
-) -> Vec<Candidate> {
-    let experiment = task.experiment;
-    let Some(optimise) = &experiment.optimise else { return candidates };
-    let mut all: Vec<Candidate> = Vec::new();
-    for variant in 0..task.variants.len() {
-        let kept = candidates.iter().filter(|candidate| variant == 0 || candidate.varied.is_none());
-        all.extend(kept.map(|candidate| Candidate { variant, ..candidate.clone() }));
-    }
-    let recipes = experiment.recipes_in(&experiment.recipe);
-    let measures = measures_of_each(&experiment.measures);
-    // A variant's scenes are compiled once for all its candidates.
-    let ready: Vec<_> = match &recipes {
-        Ok(recipes) => task
-            .variants
-            .par_iter()
-            .map(|variant| Fitness::new(evaluate, experiment, optimise, variant, recipes, &measures))
-            .collect(),
-        Err(reason) => task.variants.iter().map(|_| Err(reason.clone().into())).collect(),
-    };
-    // Several searches may have found the same gaps.
-    let open =
-        |candidate: &Candidate| candidate.varied.is_none() && matches!(candidate.outcome, Err(RowFailure::NotComputed));
-    let mut places: Vec<(usize, Vec<f64>)> = Vec::new();
-    for candidate in all.iter().filter(|candidate| open(candidate)) {
-        let place = (candidate.variant, candidate.gaps.clone());
-        if !places.contains(&place) {
-            places.push(place);
-        }
-    }
-    let evaluated = |(variant, gaps): &(usize, Vec<f64>)| {
-        if let Some((_, outcome)) = known.iter().find(|(known, _)| *variant == 0 && known == gaps) {
-            return outcome.clone();
-        }
-        let rigour = if *variant == 0 { Rigour::Result } else { Rigour::Variant };
-        ready[*variant].as_ref().map_err(RowFailure::clone)?.evaluate(gaps, rigour)
-    };
-    let outcomes: Vec<Result<Evaluated, RowFailure>> = places.par_iter().map(evaluated).collect();
-    for candidate in all.iter_mut().filter(|candidate| open(candidate)) {
-        let at = places.iter().position(|(variant, gaps)| *variant == candidate.variant && *gaps == candidate.gaps);
-        if let Some(at) = at {
-            candidate.outcome.clone_from(&outcomes[at]);
-        }
-    }
-    all
 }

@@ -10,11 +10,10 @@ use rayon::prelude::*;
 
 use super::evaluate::guarded;
 use super::event::{Event, EventHandler};
-use super::known_rows::KnownRows;
 use super::row_failure::RowFailure;
-use super::run::{Finished, Task};
 use super::spent::Meter;
 use super::tabulate_branches::{BranchRow, failures, table};
+use super::task::{Finished, Task};
 use super::variant::Variant;
 use crate::dynamics::{
     Allowance, Along, Branch, BranchEnd, BranchError, BranchPoint, EngineError, HybridSystem, Options, Orbit,
@@ -23,7 +22,6 @@ use crate::dynamics::{
 use crate::experiment::{Continuation, Experiment, ParameterValue, Recipe, RowSource};
 use crate::measure::{EvaluateError, Evaluated, Needs, Rigour, SolverChoice, measured_orbit, rounded};
 use crate::scene::{Scene, compile};
-use crate::table::Table;
 use crate::text::number::quantity;
 use crate::text::words;
 
@@ -42,10 +40,9 @@ pub(super) fn run_branches(task: Task<'_>, meter: &Meter, handler: &dyn EventHan
     let Task { experiment, variants, metadata, .. } = task;
     let RowSource::Branches(continuation) = experiment.row_source() else { return Finished::default() };
     let all = points(continuation, variants) as u64;
-    if let Some(whole) = task.known.and_then(KnownRows::whole) {
+    if let Some(finished) = task.known_whole() {
         handler.on_event(&Event::Simulated { experiment: &experiment.id, count: all });
-        // Its title may have changed since.
-        return Finished { table: Table { metadata: metadata.clone(), ..whole.clone() }, ..Finished::default() };
+        return finished;
     }
     let within = |it: &(dyn Fn() -> Vec<BranchRow> + Sync)| {
         let simulate = || Allowance::new(task.limit).simulate(it);

@@ -10,7 +10,7 @@ use super::layout::{ASSUMPTIONS, Layout, record_name, table_name};
 use super::load::Source;
 use super::reason::{Reason, differences};
 use super::record::{NoRecord, Record};
-use super::run::Task;
+use super::task::Task;
 use super::variant::{Sensitivity, Variant, variants};
 use crate::dynamics::SOLVER_VERSION;
 use crate::experiment::{AssumptionName, AssumptionSheet, AssumptionValue, RowSource};

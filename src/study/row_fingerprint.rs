@@ -8,10 +8,9 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::chain::units;
-use super::job::Job;
+use super::asked::asked;
+use super::job::{Job, units};
 use super::variant::Variant;
-use super::work::asked;
 use crate::dynamics::SOLVER_VERSION;
 use crate::experiment::{Assumptions, Case, Experiment, ParameterValue, Recipe};
 use crate::measure::{ENSEMBLE_OF_A_VARIANT, Rigour};

@@ -40,6 +40,17 @@ impl Data {
         }
     }
 
+    /// The number in a row, if it holds one; counts come as floats.
+    #[must_use]
+    #[expect(clippy::cast_precision_loss, reason = "counts of events stay far below 2^53")]
+    pub fn number(&self, row: usize) -> Option<f64> {
+        match self {
+            Self::Float(cells) => cells.get(row).copied(),
+            Self::Int(cells) => cells.get(row).map(|&count| count as f64),
+            Self::Text(_) | Self::FloatList(_) => None,
+        }
+    }
+
     /// True without cells.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -1,0 +1,83 @@
+//! What the runner is given, and what it gives back.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::event::Left;
+use super::known_rows::KnownRows;
+use super::record::Failures;
+use super::shard::Shard;
+use super::spent::Spent;
+use super::variant::Variant;
+use crate::dynamics::Limit;
+use crate::experiment::{Experiment, RowSource};
+use crate::table::Table;
+
+/// An experiment to be run.
+#[derive(Debug, Clone, Copy)]
+pub struct Task<'a> {
+    /// What to run.
+    pub experiment: &'a Experiment,
+    /// Under which assumptions; the baseline comes first.
+    pub variants: &'a [Variant],
+    /// Provenance for the table's metadata.
+    pub metadata: &'a BTreeMap<String, String>,
+    /// Where an optimisation keeps what it has evaluated, so that it can go on after an interruption; `None`: nowhere.
+    pub journal: Option<&'a Path>,
+    /// The shard to which to keep; `None`: all of it. Of an experiment that is not divided the shard does all.
+    pub shard: Option<Shard>,
+    /// The most that a row may take.
+    pub limit: Limit,
+    /// Rows that need not be simulated; `None`: all are.
+    pub known: Option<&'a KnownRows>,
+}
+
+impl<'a> Task<'a> {
+    /// All of it, with nothing known and nothing kept on the way.
+    #[must_use]
+    pub fn new(experiment: &'a Experiment, variants: &'a [Variant], metadata: &'a BTreeMap<String, String>) -> Self {
+        let limit = experiment.limit;
+        Self { experiment, variants, metadata, journal: None, shard: None, limit, known: None }
+    }
+
+    /// What an earlier run has left of it, if that is this experiment as a whole; its title may have changed since.
+    pub(super) fn known_whole(&self) -> Option<Finished> {
+        let whole = self.known.and_then(KnownRows::whole)?;
+        Some(Finished { table: Table { metadata: self.metadata.clone(), ..whole.clone() }, ..Finished::default() })
+    }
+}
+
+/// An experiment that has been run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Finished {
+    /// Its table.
+    pub table: Table,
+    /// The rows of it that have no numbers.
+    pub failures: Failures,
+    /// What it took.
+    pub spent: Spent,
+    /// An interrupt came before some of its rows.
+    pub interrupted: bool,
+}
+
+impl Finished {
+    /// True if its rows can be kept for the next run. What the journal holds of an optimisation says more than its table, and half a
+    /// branch is followed again: neither says what a row was computed from.
+    #[must_use]
+    pub fn has_rows_to_keep(&self) -> bool {
+        !self.table.fingerprints.is_empty() && self.failures.rows < self.table.rows()
+    }
+
+    /// What an interrupt has left for the next run.
+    pub(super) fn left(&self, task: Task<'_>) -> Left {
+        if self.has_rows_to_keep() {
+            let rows = self.table.rows();
+            return Left::Rows { done: rows - self.failures.rows, rows };
+        }
+        match task.experiment.row_source() {
+            _ if self.spent.is_nothing() => Left::NotBegun,
+            RowSource::Search(_) if task.journal.is_some() => Left::Journal,
+            _ => Left::Nothing,
+        }
+    }
+}
