@@ -1,19 +1,16 @@
-//! One case: the runs that it takes, and all that is read off one of them.
-//!
-//! Where runs are to settle, all of a case are made so; if one of them does not, the case is evaluated as if it had not been asked.
+//! One case, and all that is read off a run of it.
 
-use super::certainty::{OwnRun, rounding};
 use super::each_cycle;
 use super::energy::Energies;
 use super::history::History;
 use super::kept;
 use super::later::{Later, settled_later};
-use super::reading::Reading;
+use super::reading::{Reading, rounding};
 use super::references::References;
 use super::shape::{self, Shape};
 use super::{EvaluateError, Evaluated, Measure, Measured, Rigour, Subject, TraceColumn};
-use crate::dynamics::{Averaged, EngineError, HybridSystem, MotionKind, Options, Proof, Response, StartState, Until};
-use crate::measure::{Link, NamedRows, Request, Settings, ShapeOf, SolverChoice};
+use crate::dynamics::{Averaged, EngineError, HybridSystem, MotionKind, Options, Proof, Response, StartState};
+use crate::measure::{NamedRows, Request, Settings, ShapeOf};
 use crate::scene::Scene;
 
 /// A case while it is evaluated.
@@ -31,42 +28,6 @@ pub(super) struct Read {
 }
 
 impl Case<'_> {
-    /// Runs the system as often as it takes.
-    pub(super) fn run(
-        &self,
-        system: &HybridSystem,
-        references: &References,
-        solver: SolverChoice,
-    ) -> Result<Evaluated, EvaluateError> {
-        // A run without an audit and without a history.
-        let mut plain = self.request.options(self.scene, self.settings);
-        if let Link::After(state) = self.request.link {
-            plain.start = state.carried_to(system).ok_or(EvaluateError::NotCarried)?;
-        }
-        if references.may_settle {
-            let settles = Options { until: Until::Settled, ..plain.clone() };
-            if let Some(evaluated) = self.run_under(system, references, solver, &settles)? {
-                return Ok(evaluated);
-            }
-        }
-        let evaluated = self.run_under(system, references, solver, &plain)?;
-        Ok(evaluated.unwrap_or_else(|| unreachable!("only a run that is to settle can fail to")))
-    }
-
-    /// The same under `plain` options. `None` where runs are to settle and one does not.
-    fn run_under(
-        &self,
-        system: &HybridSystem,
-        references: &References,
-        solver: SolverChoice,
-        plain: &Options,
-    ) -> Result<Option<Evaluated>, EvaluateError> {
-        match OwnRun::of(self, system, references, solver, plain)? {
-            Some(run) => run.evaluated(),
-            None => Ok(None),
-        }
-    }
-
     /// The motion is to be named. A number of the motion that a run settles to needs to know whether there is one.
     pub(super) fn is_named(&self) -> bool {
         let Request { rigour, .. } = *self.request;
@@ -77,7 +38,8 @@ impl Case<'_> {
     /// Natural frequencies and mode shapes.
     pub(super) fn without_run(&self) -> Result<Evaluated, EvaluateError> {
         let shape = self.mode_shape()?;
-        let reading = self.reading(None, None, shape.as_ref().map(|shape| shape.mac));
+        let mac = shape.as_ref().map(|shape| shape.mac);
+        let reading = Reading { mode: self.subject.mode, mac, ..Reading::of_scene(self.scene) };
         let exact = |value: f64| Measured { value, numerical: rounding(value), spread: 0.0 };
         let measured = self.request.measures.iter().map(|measure| reading.read(*measure).map(exact));
         Ok(Evaluated {
@@ -96,25 +58,6 @@ impl Case<'_> {
         let wanted = self.request.shape.filter(|shape| shape.of == ShapeOf::Mode);
         let number = self.subject.mode as usize;
         Ok(wanted.map(|spec| shape::of_mode(self.scene, spec, number)).transpose()?)
-    }
-
-    fn reading<'r>(
-        &'r self,
-        response: Option<&'r Response>,
-        undamped: Option<&'r Response>,
-        mac: Option<f64>,
-    ) -> Reading<'r> {
-        Reading {
-            scene: self.scene,
-            mode: self.subject.mode,
-            response,
-            undamped,
-            history: None,
-            energies: None,
-            skip: self.settings.skip,
-            average: self.settings.average,
-            mac,
-        }
     }
 
     /// The motion that the run goes on to, where a measure is read off it.
@@ -160,10 +103,16 @@ impl Case<'_> {
             let cycles = u64::from(trace.from_cycle)..u64::from(trace.to_cycle);
             History { response, scene: self.scene, cycles }
         });
-        let mac = shape.as_ref().map(|shape| shape.mac);
-        let mut reading = self.reading(Some(response), undamped, mac);
-        reading.history = history;
-        reading.energies = energies.as_ref();
+        let reading = Reading {
+            mode: self.subject.mode,
+            undamped,
+            history,
+            energies: energies.as_ref(),
+            skip: self.settings.skip,
+            average: self.settings.average,
+            mac: shape.as_ref().map(|shape| shape.mac),
+            ..Reading::of_run(self.scene, response)
+        };
         let value = |measure: &Measure| {
             if !whole && measure.is_of_own_run() { Ok(f64::NAN) } else { reading.read(*measure) }
         };
@@ -173,7 +122,7 @@ impl Case<'_> {
             let trace = |it: &History<'_>| kept::of_trace(&it.response.trace, it.scene.g());
             lists.extend(reading.history.iter().flat_map(trace));
             if let (Some(energies), Some(spec)) = (&energies, request.energies) {
-                lists.extend(energies.columns(spec));
+                lists.extend(kept::of_cycles(energies, spec));
             }
             lists.extend(shape.into_iter().flat_map(|shape| shape.columns));
             if let Some(each) = request.each_cycle {
@@ -186,6 +135,6 @@ impl Case<'_> {
     }
 
     pub(super) fn rms_velocity(&self, response: &Response) -> f64 {
-        self.reading(None, None, None).rms_velocity(response)
+        Reading::of_run(self.scene, response).rms_velocity(response)
     }
 }

@@ -11,9 +11,9 @@
 //! A point impulse gives each mode the same share, so that T just after it grows with the number of modes without limit:
 //! these measures mean something together with that number only.
 
-use super::{Comparison, TraceColumn, kept};
+use super::Comparison;
 use crate::dynamics::{CycleRates, Matrix, Response, StartState};
-use crate::measure::{EnergySpec, Settings};
+use crate::measure::Settings;
 use crate::scene::Scene;
 
 /// Kinetic energies of every cycle, J.
@@ -85,12 +85,6 @@ impl Energies {
             Some(Comparison::Level) => jump(&self.with, of_start) / before(&self.without, of_clean_start),
             None => f64::NAN,
         }
-    }
-
-    /// The list columns.
-    pub(super) fn columns(&self, spec: &EnergySpec) -> Vec<TraceColumn> {
-        let cycles = spec.from_cycle as usize..(spec.to_cycle as usize).min(self.with.len());
-        kept::of_cycles(self, cycles)
     }
 }
 

@@ -2,7 +2,7 @@
 //! makes it, what checks a figure's columns and the JSON Schema follow.
 
 use super::energy::Energies;
-use super::{Evaluated, ShapeOf, ShapeSpec, TraceColumn};
+use super::{EnergySpec, Evaluated, ShapeOf, ShapeSpec, TraceColumn};
 use crate::dynamics::{Sample, SampledParticle};
 
 /// A column: its name, its unit, and its number.
@@ -130,7 +130,8 @@ pub(super) fn of_trace(samples: &[Sample], g: f64) -> Vec<TraceColumn> {
 }
 
 /// The lists of kinetic energies.
-pub(super) fn of_cycles(energies: &Energies, cycles: std::ops::Range<usize>) -> Vec<TraceColumn> {
+pub(super) fn of_cycles(energies: &Energies, spec: &EnergySpec) -> Vec<TraceColumn> {
+    let cycles = spec.from_cycle as usize..(spec.to_cycle as usize).min(energies.with.len());
     let list = |column: &Kept<OfCycle>| cycles.clone().map(|cycle| (column.of)(energies, cycle)).collect();
     ENERGIES.iter().map(|column| TraceColumn::new(column.name, column.unit, list(column))).collect()
 }

@@ -8,9 +8,10 @@ use super::Evaluated;
 use crate::dynamics::{EngineError, HybridSystem, Options, Response, event_driven, event_driven_within};
 use crate::text::number::count;
 
-/// Events that a neighbour may have for each one of the run,
+/// Events that a neighbour may have for each event of the run.
 const FOR_EACH: u64 = 100;
-/// and for each particle: several times as many as it takes to rest again where it loses a thousandth of its speed at each impact.
+/// Events that it may have besides, for each particle: several times what a particle needs to come to rest where it loses a thousandth of
+/// its speed at each impact.
 const FOR_A_PARTICLE: u64 = 100_000;
 
 /// The run beside `run` under these options; the inner error says why there is none.

@@ -39,17 +39,9 @@ pub fn measured_orbit(
         None => None,
     };
     let read = |response| -> Result<Vec<f64>, EvaluateError> {
-        let reading = Reading {
-            scene,
-            mode: subject.mode,
-            response: Some(response),
-            undamped: undamped.as_ref(),
-            history: None,
-            energies: None,
-            skip: 0,
-            average: orbit.cycles,
-            mac: None,
-        };
+        let undamped = undamped.as_ref();
+        let (mode, average) = (subject.mode, orbit.cycles);
+        let reading = Reading { mode, undamped, average, ..Reading::of_run(scene, response) };
         measures.iter().map(|measure| reading.read(*measure)).collect()
     };
     let (values, others) = (read(&response)?, read(&again)?);

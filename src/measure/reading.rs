@@ -29,12 +29,12 @@ pub(super) struct Reading<'a> {
 }
 
 impl<'a> Reading<'a> {
-    /// Of a run alone.
-    pub(super) fn of_run(scene: &'a Scene, response: &'a Response) -> Self {
+    /// Of a scene that is not run.
+    pub(super) fn of_scene(scene: &'a Scene) -> Self {
         Self {
             scene,
             mode: 1,
-            response: Some(response),
+            response: None,
             undamped: None,
             history: None,
             energies: None,
@@ -43,6 +43,16 @@ impl<'a> Reading<'a> {
             mac: None,
         }
     }
+
+    /// Of a run alone.
+    pub(super) fn of_run(scene: &'a Scene, response: &'a Response) -> Self {
+        Self { response: Some(response), ..Self::of_scene(scene) }
+    }
+}
+
+/// What rounding leaves of a number.
+pub(super) fn rounding(value: f64) -> f64 {
+    4.0 * f64::EPSILON * value.abs()
 }
 
 impl Reading<'_> {

@@ -62,15 +62,12 @@ impl<'a> Trial<'a> {
             None
         };
         let reading = Reading {
-            scene: &self.scene,
             mode: self.mode,
-            response: Some(response),
             undamped: Some(undamped),
-            history: None,
             skip: self.settings.skip,
             average: self.settings.average,
             energies: energies.as_ref(),
-            mac: None,
+            ..Reading::of_run(&self.scene, response)
         };
         self.measures.iter().map(|measure| reading.read(*measure)).collect()
     }
