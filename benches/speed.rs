@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use common::{BEAM, SINGLE, experiment, system};
 use shotdamp::dynamics::{
-    Along, Branch, Contact, EventKind, HybridSystem, Options, Orbit, Response, StartState, event_driven,
+    Along, Branch, Contact, EventKind, HybridSystem, Options, Orbit, Placed, Response, StartState, event_driven,
 };
 use shotdamp::experiment::{Axis, AxisScale, Band, Drawing, FigureSpec, Joined, Panel};
 use shotdamp::figure::{Beside, draw};
@@ -188,7 +188,8 @@ fn periodic(system: &HybridSystem) -> String {
     let run = event_driven(system, &Options::default()).expect("the scenes above run");
     let [y, w] = run.final_particles[0];
     let (x, v) = (run.final_displacement, run.final_velocity);
-    let last = StartState::Given { q: vec![x], rate: vec![v], particles: vec![(Contact::Flight, y - x, w - v)] };
+    let last =
+        StartState::Given { q: vec![x], rate: vec![v], particles: vec![Placed::new(Contact::Flight, y - x, w - v)] };
     let orbit = || Orbit::near(std::hint::black_box(system), &last, 1).expect("the run has settled");
     let first = orbit();
     let stronger = |times: f64| {

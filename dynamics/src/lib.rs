@@ -59,7 +59,7 @@ pub use linear::{SteadyMotion, SteadyState, ceiling_graze, lift_off, steady_stat
 pub use march::reach::{FarSurface, OutOfReach, out_of_reach};
 pub use motion::{Exponent, Fundamental, Motion, MotionKind, Multiplier, Recurring, Settling};
 pub use options::trace::TraceRequest;
-pub use options::{Averaged, Options, StartState, Until};
+pub use options::{Averaged, Options, Placed, StartState, Until};
 pub use orbit::{
     Along, Branch, BranchEnd, BranchError, BranchPoint, Elasticity, ElasticityError, Orbit, OrbitError, Special,
 };
@@ -75,4 +75,4 @@ pub use system::{
 };
 
 /// Changes whenever the same scene may give other bits. A test holds the bits of fixed scenes against it.
-pub const SOLVER_VERSION: u32 = 42;
+pub const SOLVER_VERSION: u32 = 43;

@@ -103,6 +103,7 @@ pub(super) fn read_run(
             round_period_to: given.round_period_to,
             ensemble: given.ensemble.unwrap_or(USUAL_ENSEMBLE),
             named: NamedRows::default(),
+            mean_of: 0,
         },
         transient,
         settled_at: given.until.filter(|(until, _)| *until == Until::Settled).map(|(_, at)| at),

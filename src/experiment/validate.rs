@@ -264,7 +264,11 @@ impl<'t> ExperimentReader<'t> {
             solvers: all_solvers(&cases),
             cases,
             swept: sweep.swept,
-            settings: Settings { named: named_rows(&measures, maximise.as_ref()), ..run.settings },
+            settings: Settings {
+                named: named_rows(&measures, maximise.as_ref()),
+                mean_of: inner.len() as u32,
+                ..run.settings
+            },
             transient: run.transient.map(|(transient, _)| transient),
             limit: run.limit,
             moved: run.moved.as_ref().map(|moved| moved.keys().cloned().collect()),

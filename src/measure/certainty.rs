@@ -6,10 +6,13 @@
 //! starts, and the one without a kick, gives mean and spread. Under another value of an unstated input, and in a landscape, it is as
 //! large as its means need. A search makes one run a step, and what it finds is evaluated as a result afterwards. The fixed step is
 //! run once: what its step does to the numbers is the result that it is there for.
+//!
+//! Where runs are to settle, all of a case are made so; if one of them does not, the case is evaluated as if it had not been asked.
 
 use super::case::{Case, Read};
 use super::history::sampling_error;
 use super::neighbour::{neighbour, repeated};
+use super::reading::rounding;
 use super::references::References;
 use super::{ENSEMBLE_OF_A_VARIANT, EnsembleSize, EvaluateError, Evaluated, Measure, Measured, Rigour};
 use crate::dynamics::{HybridSystem, Method, Options, Response, StartState, TraceRequest, Until};
@@ -26,8 +29,46 @@ const MEMBERS_OF_A_LOOK: u32 = 8;
 /// Largest kick of an ensemble member.
 const ENSEMBLE_KICK: f64 = 1e-6;
 
+impl Case<'_> {
+    /// Runs the system as often as it takes.
+    pub(super) fn run(
+        &self,
+        system: &HybridSystem,
+        references: &References,
+        solver: SolverChoice,
+    ) -> Result<Evaluated, EvaluateError> {
+        // A run without an audit and without a history.
+        let mut plain = self.request.options(self.scene, self.settings);
+        if let Link::After(state) = self.request.link {
+            plain.start = state.carried_to(system).ok_or(EvaluateError::NotCarried)?;
+        }
+        if references.may_settle {
+            let settles = Options { until: Until::Settled, ..plain.clone() };
+            if let Some(evaluated) = self.run_under(system, references, solver, &settles)? {
+                return Ok(evaluated);
+            }
+        }
+        let evaluated = self.run_under(system, references, solver, &plain)?;
+        Ok(evaluated.unwrap_or_else(|| unreachable!("only a run that is to settle can fail to")))
+    }
+
+    /// The same under `plain` options. `None` where runs are to settle and one does not.
+    fn run_under(
+        &self,
+        system: &HybridSystem,
+        references: &References,
+        solver: SolverChoice,
+        plain: &Options,
+    ) -> Result<Option<Evaluated>, EvaluateError> {
+        match OwnRun::of(self, system, references, solver, plain)? {
+            Some(run) => run.evaluated(),
+            None => Ok(None),
+        }
+    }
+}
+
 /// The run of a case itself, with what was read off it.
-pub(super) struct OwnRun<'a> {
+struct OwnRun<'a> {
     case: &'a Case<'a>,
     system: &'a HybridSystem,
     solver: SolverChoice,
@@ -48,7 +89,7 @@ pub(super) struct OwnRun<'a> {
 
 impl<'a> OwnRun<'a> {
     /// Makes it. `None` where it is to settle and does not.
-    pub(super) fn of(
+    fn of(
         case: &'a Case<'a>,
         system: &'a HybridSystem,
         references: &'a References,
@@ -88,7 +129,7 @@ impl<'a> OwnRun<'a> {
     }
 
     /// Its numbers, and how far each is to be trusted. `None` where runs are to settle and one beside it does not.
-    pub(super) fn evaluated(mut self) -> Result<Option<Evaluated>, EvaluateError> {
+    fn evaluated(mut self) -> Result<Option<Evaluated>, EvaluateError> {
         if matches!(self.solver, SolverChoice::FixedStep { .. }) || self.system.particles.is_empty() {
             return Ok(Some(self.certain(vec![0.0; self.read.values.len()], false)));
         }
@@ -224,7 +265,7 @@ impl<'a> OwnRun<'a> {
         all.add(&read(twin)?);
         let (members, mut count) = (self.members(), 2);
         for member in 2..members {
-            if self.case.request.rigour == Rigour::Variant && all.is_sharp(count) {
+            if self.case.request.rigour == Rigour::Variant && all.is_sharp(count, self.case.settings.mean_of) {
                 break;
             }
             count += 1;
@@ -249,11 +290,6 @@ impl<'a> OwnRun<'a> {
         });
         Ok(Some(self.of_members(count, measured.collect(), true)))
     }
-}
-
-/// What rounding leaves of a number.
-pub(super) fn rounding(value: f64) -> f64 {
-    4.0 * f64::EPSILON * value.abs()
 }
 
 /// A run was to settle under these options and has not.
@@ -288,9 +324,11 @@ impl<'a> Ensemble<'a> {
         self.measures.iter().zip(&self.statistics)
     }
 
-    /// Whether the means of so many members are sharp enough.
-    fn is_sharp(&self, members: u32) -> bool {
+    /// Whether the means of so many members are sharp enough, for a number that is the mean over so many cases: their errors are
+    /// independent.
+    fn is_sharp(&self, members: u32, cases: u32) -> bool {
         let EnsembleSize { early, half_width, .. } = ENSEMBLE_OF_A_VARIANT;
+        let half_width = half_width * f64::from(cases.max(1)).sqrt();
         early.iter().find(|early| early.members == members).is_some_and(|early| {
             // What is no number becomes none by more runs.
             let is_wide = |sum: &Welford| early.student * sum.standard_error() > half_width * sum.mean.abs();

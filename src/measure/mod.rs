@@ -59,7 +59,8 @@ pub struct EnsembleSize {
     pub early: [EarlyEnd; 2],
     /// Members at most.
     pub most: u32,
-    /// Half the interval in which each mean lies with a probability of 95 %, relative to the mean, at which it is enough.
+    /// Half the interval in which each mean lies with a probability of 95 %, relative to the mean, at which it is enough; √n times that
+    /// where a number is the mean over n cases.
     pub half_width: f64,
 }
 
@@ -72,8 +73,8 @@ pub struct EarlyEnd {
     pub student: f64,
 }
 
-/// Of a [`Rigour::Variant`]. Under another value of an unstated input it is read for how far that moves a number that is compared within
-/// some percent: one is enough.
+/// Of a [`Rigour::Variant`], which only tells how far an input moves a number that is compared to within a few percent: a mean known to one
+/// percent is enough.
 pub const ENSEMBLE_OF_A_VARIANT: EnsembleSize = EnsembleSize {
     early: [EarlyEnd { members: 4, student: 3.182 }, EarlyEnd { members: 6, student: 2.571 }],
     most: 8,

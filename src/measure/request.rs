@@ -130,6 +130,9 @@ pub struct Settings {
     /// Of which rows the motion is named, where it is measured.
     #[serde(default, skip_serializing_if = "is_usual")]
     pub named: NamedRows,
+    /// Cases that a number is the mean over; 0 of one that is measured in a case alone.
+    #[serde(skip)]
+    pub mean_of: u32,
 }
 
 /// The rows whose motion is named: that takes a third of a run, and the other rows are many.

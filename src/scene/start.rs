@@ -5,7 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Scene, Structure};
-use crate::dynamics::{Contact, StartState};
+use crate::dynamics::{Contact, Placed, StartState};
 use crate::text::number::quantity;
 
 /// Where a run starts.
@@ -113,8 +113,8 @@ impl Scene {
             all
         };
         let place = |index: usize| match start.particles.get(index) {
-            None | Some(ParticleStart::OnFloor) => (Contact::Floor, 0.0, 0.0),
-            Some(ParticleStart::InFlight { height, velocity }) => (Contact::Flight, *height, *velocity),
+            None | Some(ParticleStart::OnFloor) => Placed::ON_FLOOR,
+            Some(ParticleStart::InFlight { height, velocity }) => Placed::new(Contact::Flight, *height, *velocity),
         };
         StartState::Given {
             q: coordinates(start.displacement),

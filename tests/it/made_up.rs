@@ -75,6 +75,7 @@ pub fn limit_stop() -> Experiment {
             round_period_to: None,
             ensemble: 32,
             named: NamedRows::Results,
+            mean_of: 0,
         },
         transient: None,
         limit: Limit::default(),

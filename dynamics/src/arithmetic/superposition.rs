@@ -7,7 +7,6 @@ use std::ops::Range;
 
 use crate::arithmetic::four::Four;
 use crate::arithmetic::lanes::WIDTH;
-use crate::arithmetic::wide::widened;
 
 /// Registers of a strip.
 const STRIP: usize = 8;
@@ -65,11 +64,7 @@ impl Superposition {
         WIDTH * self.entries.len()
     }
 
-    widened! {
-        /// y = Σ xᵢ rᵢ; rows beyond the last x count nothing.
-        pub(crate) fn sum | sum_wide (&self, x: &[f64], y: &mut [f64]) = sum_by_registers
-    }
-
+    /// y = Σ xᵢ rᵢ; rows beyond the last x count nothing.
     #[inline(always)]
     pub(crate) fn sum_by_registers(&self, x: &[f64], y: &mut [f64]) {
         let (mut rows, mut y, mut left) = (&self.entries[..], &mut y[..self.length], self.registers);
@@ -146,7 +141,7 @@ mod tests {
             }
             let matrix = Superposition::default().of_rows(count, &entries);
             let (mut here, mut everywhere) = (vec![0.0; count], vec![0.0; count]);
-            matrix.sum(&x, &mut here);
+            matrix.sum_by_registers(&x, &mut here);
             matrix.sum_by_registers(&x, &mut everywhere);
             assert_eq!([&here, &everywhere], [&expected; 2], "{length} numbers");
             let columns: Vec<f64> =

@@ -404,13 +404,13 @@ fn start(system: &HybridSystem, from: &StartState, layout: Layout) -> Result<(Ve
         StartState::Given { q, rate, particles } => {
             state[..n].copy_from_slice(q);
             state[positions..positions + n].copy_from_slice(rate);
-            for (j, ((contact, gap, speed), particle)) in particles.iter().zip(&system.particles).enumerate() {
-                let side = contact.side();
+            for (j, (at, particle)) in particles.iter().zip(&system.particles).enumerate() {
+                let side = at.contact.side();
                 let ahead = |x: &[f64]| lead(particle, side).zip(x).fold(0.0, |sum, (lead, x)| sum + lead * x);
-                state[layout.gap(j)] = gap + side.height(particle) + ahead(q);
-                state[layout.gap(j) + positions] = speed + ahead(rate);
+                state[layout.gap(j)] = at.gap + side.height(particle) + ahead(q);
+                state[layout.gap(j) + positions] = at.rate + ahead(rate);
             }
-            Ok((particles.iter().map(|(contact, ..)| *contact).collect(), state))
+            Ok((particles.iter().map(|at| at.contact).collect(), state))
         }
     }
 }

@@ -213,7 +213,8 @@ mod tests {
         let mut sum = [0.0; 3];
         for (panel, [x, weight]) in (0..count).flat_map(|panel| quadrature::TEN.map(|node| (panel, node))) {
             let t = (panel as f64 + x) * h;
-            let [value, rate, ..] = crate::flow::signals::motion(blocks, start, rest, |k| blocks[k].kernel(t), t);
+            let [value, rate, ..] =
+                crate::flow::signals::motion(blocks, start.iter().copied(), rest, |k| blocks[k].kernel(t), t);
             let value = value - place;
             let parts = [value, value * value, rate * rate];
             sum.iter_mut().zip(parts).for_each(|(sum, part)| *sum += weight * h * part);

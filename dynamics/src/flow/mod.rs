@@ -44,7 +44,7 @@ use crate::flow::series::Series;
 use crate::flow::signals::{Row, Rows};
 use crate::flow::steps::Steps;
 use crate::flow::way::{MOST_BLOCKS, Ways};
-use crate::system::{Contact, DrivePhase, HybridSystem, Particle};
+use crate::system::{Contact, DrivePhase, HybridSystem};
 
 /// Distance of a block's eigenvalue from the drive's, as a share of that, below which the steady answer is above ten times F/(m ω²).
 const NEAR_RESONANCE: f64 = 0.05;
@@ -87,7 +87,7 @@ pub(crate) struct Flow {
     /// Signals that are watched or measured.
     pub(crate) rows: Rows,
     /// Those of the faces on both sides of each enclosure; worked out when they are asked for.
-    faces: OnceCell<Vec<[Row; 2]>>,
+    faces: OnceCell<Vec<[OnceCell<Row>; 2]>>,
     /// Closed forms of its integrals, where they keep their digits; worked out when they are asked for.
     closed: OnceCell<Option<Closed>>,
     velocity_squares: OnceCell<Vec<VelocitySquare>>,
@@ -215,7 +215,8 @@ impl Flow {
     pub(crate) fn size(&self) -> usize {
         self.modes.size()
             + self.rows.size()
-            + self.faces.get().map_or(0, |faces| 8 * faces.len() * self.blocks.len())
+            + 4 * self.blocks.len()
+                * self.faces.get().into_iter().flatten().flatten().filter(|face| face.get().is_some()).count()
             + self.steps.as_ref().map_or(0, Steps::size)
             + self.cells.as_ref().map_or(0, |_| Cells::size())
             + self.closed.get().and_then(Option::as_ref).map_or(0, Closed::size)
@@ -256,11 +257,8 @@ impl Flow {
 
     /// Row of the face on one side of particle j's enclosure.
     pub(crate) fn face(&self, system: &HybridSystem, j: usize, side: Side) -> &Row {
-        let rows = |particle: &Particle| {
-            [Side::Floor, Side::Ceiling].map(|side| self.row(&side.face(particle).row, Vec::new()))
-        };
-        let [floor, ceiling] = &self.faces.get_or_init(|| system.particles.iter().map(rows).collect())[j];
-        side.of(floor, ceiling)
+        let [floor, ceiling] = &self.faces.get_or_init(|| vec![Default::default(); system.particles.len()])[j];
+        side.of(floor, ceiling).get_or_init(|| self.row(&side.face(&system.particles[j]).row, Vec::new()))
     }
 
     widened! {
@@ -349,13 +347,13 @@ impl Flow {
     }
 
     /// Takes off the block coordinates of (p, p′) what rounding has put in: c + V⁻¹(s − V c). V(V⁻¹ s) is off from s by the same
-    /// share at each entry, and over 10⁵ of them that adds up.
+    /// share at each entry, and over 10⁵ of them that adds up. `work` holds s, as [`Self::enter`] leaves it, and what is missing
+    /// afterwards.
     #[cold]
-    pub(crate) fn correct(&self, p: &[f64], rate: &[f64], force: f64, drive: DrivePhase, c: &mut [f64]) {
-        let (order, size) = (self.order, self.modes.spectral.width());
+    pub(crate) fn correct(&self, work: &mut [f64], c: &mut [f64]) {
+        let size = self.modes.spectral.width();
         let c = &mut c[..size];
-        let mut missing = vec![0.0; 2 * order];
-        self.free([p, rate], force, drive, &mut missing);
+        let missing = &mut work[..2 * self.order];
         for (missing, row) in missing.iter_mut().zip(self.modes.spectral.from_blocks.chunks_exact(size)) {
             *missing = exact::rest(*missing, row, c);
         }

@@ -179,11 +179,6 @@ impl Row {
         })
     }
 
-    /// Those shares, and what constant loads add.
-    pub(crate) fn evaluate(&self, c: &[f64], force: f64) -> (Vec<Phase>, Parabola) {
-        (self.phases(c).collect(), self.rest(force))
-    }
-
     /// What constant loads add, under this force.
     #[inline(always)]
     pub(crate) fn rest(&self, force: f64) -> Parabola {
@@ -427,14 +422,14 @@ fn together(weights: &[[f64; 4]]) -> [Four; 4] {
 /// A signal, its rate, its acceleration and the rate of that after a time, by the kernels of its blocks.
 pub(crate) fn motion(
     blocks: &[Block],
-    phases: &[Phase],
+    phases: impl Iterator<Item = Phase>,
     rest: Parabola,
     kernel: impl Fn(usize) -> Kernel,
     time: f64,
 ) -> [f64; 4] {
     let mut motion = [rest.at(time), rest.rate(time), 2.0 * rest.p2, 0.0];
     for (k, (block, phase)) in blocks.iter().zip(phases).enumerate() {
-        block.add_motion(&mut motion, block.advance(*phase, kernel(k)));
+        block.add_motion(&mut motion, block.advance(phase, kernel(k)));
     }
     motion
 }

@@ -17,7 +17,7 @@ use crate::contact_state::load::Steady;
 use crate::flow::Flow;
 
 /// Blocks beyond which a matrix from each neighbour takes more room than it saves time.
-pub(super) const MOST_BLOCKS: usize = 12;
+pub(super) const MOST_BLOCKS: usize = 24;
 
 /// Numbers of a [`Way`]'s x behind the coordinates of the flow that it comes from.
 pub(crate) const BESIDE: usize = 4;

@@ -20,7 +20,7 @@ const NOTHING: f64 = 1e-13;
 pub(super) fn share(system: &HybridSystem, Steady { flow, cycle, state }: &Steady) -> Option<f64> {
     let shares = guards(system, flow).into_iter().filter_map(|guard| {
         let mut extremes = Extremes::default();
-        range::take(system, flow, guard.row, cycle, state, 1, &mut extremes);
+        range::take(flow, guard.row, cycle, state, 1, &mut extremes);
         let at_rest = guard.of(guard.row.gravity.p0);
         let lowest = extremes.displacement.into_iter().map(|value| guard.of(value)).fold(f64::INFINITY, f64::min);
         let loss = at_rest - lowest;

@@ -34,7 +34,7 @@ use crate::error::EngineError;
 use crate::flow::Flow;
 use crate::flow::signals::Row;
 use crate::flow::sums::Sums;
-use crate::options::{Options, StartState};
+use crate::options::{Options, Placed, StartState};
 use crate::response::audit::Audit;
 use crate::response::extremes::Extremes;
 use crate::response::proof::Proof;
@@ -155,7 +155,7 @@ pub fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>, Engine
         let parts = integrals(system, &flow, &rows, &cycle, &at, true);
         let motion = |(row, part): (&&Row, Sums)| {
             let mut extremes = Extremes::default();
-            range::take(system, &flow, row, &cycle, &steady, 1, &mut extremes);
+            range::take(&flow, row, &cycle, &steady, 1, &mut extremes);
             SteadyMotion { cycle: part, extremes }
         };
         Ok(Some(SteadyState { observed: rows.iter().zip(parts).map(motion).collect(), margin }))
@@ -313,7 +313,7 @@ impl<'a> Run<'a> {
         if options.extremes {
             for (row, of) in rows.iter().zip(&mut response.observed) {
                 for Stretch { cycle, start, at } in self.stretch(skip, skip + average) {
-                    range::take(system, flow, row, cycle, &start, at.count as u64, &mut of.extremes);
+                    range::take(flow, row, cycle, &start, at.count as u64, &mut of.extremes);
                 }
             }
         }
@@ -342,9 +342,9 @@ impl<'a> Run<'a> {
 /// A state with every particle on its floor, as a run may start from it; a rigid floor has no place of its own in the flow.
 fn on_floors(system: &HybridSystem, flow: &Flow, p: &[f64], rate: &[f64]) -> StartState {
     let n = system.mass.order;
-    let mut particles = vec![(Contact::Floor, 0.0, 0.0); system.particles.len()];
+    let mut particles = vec![Placed::ON_FLOOR; system.particles.len()];
     for (i, &j) in flow.modes.attached.iter().enumerate() {
-        particles[j] = (Contact::Floor, p[n + i], rate[n + i]);
+        particles[j] = Placed::new(Contact::Floor, p[n + i], rate[n + i]);
     }
     StartState::Given { q: p[..n].to_vec(), rate: rate[..n].to_vec(), particles }
 }

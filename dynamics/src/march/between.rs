@@ -5,6 +5,7 @@
 
 use super::March;
 use super::effects::Effects;
+use super::grip::Bend;
 use crate::contact::{Change, Crossing, Hold, Relative, STICKING_SPEED, Side};
 use crate::contact_state::face_damping;
 use crate::error::EngineError;
@@ -224,11 +225,7 @@ impl<E: Effects> March<'_, E> {
         else {
             return [0.0; 2];
         };
-        let (phases, rest) = flow.rows.row(row).evaluate(&self.c, self.level);
-        let mut bend = 2.0 * rest.p2;
-        for (block, phase) in flow.blocks.iter().zip(&phases) {
-            bend += block.acceleration(*phase).value;
-        }
+        let Bend { value: bend, .. } = Bend::of(&flow.blocks, flow.rows.row(row), &self.c, self.level);
         // The way across counts from the particle to the face, as away from the face.
         let bend = if contact.side() == other { other.away() * bend } else { bend };
         let (here, damping) = (self.relative_to(j, other), self.damping_on(j, other));

@@ -5,7 +5,6 @@ use super::March;
 use super::effects::Effects;
 use super::half_cycles::Stage;
 use crate::arithmetic::few::Few;
-use crate::arithmetic::matrix::dot;
 use crate::contact::{Change, Crossing, Hold, Relative, Side};
 use crate::error::EngineError;
 use crate::search::guards;
@@ -241,6 +240,7 @@ impl<E: Effects> March<'_, E> {
         self.changed = true;
         self.contacts[j] = Contact::Flight;
         self.choose_flow()?;
+        self.enter_now();
         let grip = self.grip(j, side, false);
         self.smooth[j] = grip.is_nothing();
         self.particles[j] = Relative::default();
@@ -279,13 +279,12 @@ impl<E: Effects> March<'_, E> {
     /// Position relative to the face on this side, for a particle whose state refers to the other one.
     pub(super) fn referred(&self, j: usize, to: Side) -> Option<Relative> {
         let particle = &self.system.particles[j];
-        let ceiling = particle.ceiling.as_ref()?;
-        let (Relative { gap, rate }, away) = (self.particles[j], to.away());
-        if !self.moves_by_itself(particle) {
-            return Some(Relative { gap: gap + away * particle.gap, rate });
+        particle.ceiling.as_ref()?;
+        let here = self.particles[j];
+        if self.moves_by_itself(particle) {
+            return Some(guards::seen_from(to, particle, here, &self.q, &self.rate));
         }
-        let shift = |x: &[f64]| away * (dot(&ceiling.row, x) - dot(&particle.floor.row, x));
-        Some(Relative { gap: gap + away * particle.gap + shift(&self.q), rate: rate + shift(&self.rate) })
+        Some(Relative { gap: here.gap + to.away() * particle.gap, ..here })
     }
 
     /// The ceiling of a particle does not move with its floor.

@@ -1,10 +1,33 @@
 //! Grip: how a face holds a particle that does not move against it.
 
 use crate::contact::{Side, spring_on_stop};
-use crate::contact_state::block::Phase;
-use crate::flow::Flow;
-use crate::flow::parabola::Parabola;
+use crate::contact_state::block::Block;
+use crate::flow::signals::Row;
 use crate::system::HybridSystem;
+
+/// The acceleration of a signal.
+pub(crate) struct Bend {
+    pub(crate) value: f64,
+    /// How fast it grows.
+    rate: f64,
+    /// The moduli of its parts, whose rounding it has.
+    size: f64,
+}
+
+impl Bend {
+    /// Of a row at these block coordinates, under this constant force.
+    pub(crate) fn of(blocks: &[Block], row: &Row, c: &[f64], force: f64) -> Self {
+        let constant = 2.0 * row.rest(force).p2;
+        let mut bend = Self { value: constant, rate: 0.0, size: constant.abs() };
+        for (block, phase) in blocks.iter().zip(row.phases(c)) {
+            let now = block.acceleration(phase);
+            bend.value += now.value;
+            bend.rate += now.rate;
+            bend.size += (2.0 * block.decay * phase.rate).abs() + (block.determinant * phase.value).abs();
+        }
+        bend
+    }
+}
 
 /// How a face holds a particle that does not move against it.
 #[derive(Debug, Clone, Copy, Default)]
@@ -18,30 +41,13 @@ pub(crate) struct Grip {
 }
 
 impl Grip {
-    /// The grip of a face, whose row has these shares, on particle j; with the particle in flight, what brings it back to
-    /// the face.
-    pub(crate) fn of(
-        system: &HybridSystem,
-        flow: &Flow,
-        phases: &[Phase],
-        rest: Parabola,
-        j: usize,
-        side: Side,
-        on_stop: bool,
-    ) -> Self {
+    /// The grip of a face that moves so on particle j; with the particle in flight, what brings it back to the face.
+    pub(crate) fn of(system: &HybridSystem, face: Bend, j: usize, side: Side, on_stop: bool) -> Self {
         let spring = if on_stop { spring_on_stop(&system.particles[j], side) } else { 0.0 };
-        let (mut bend, mut growth) = (2.0 * rest.p2, 0.0);
-        let mut size = system.gravity + bend.abs() + spring;
-        for (block, phase) in flow.blocks.iter().zip(phases) {
-            let now = block.acceleration(*phase);
-            bend += now.value;
-            growth += now.rate;
-            size += (2.0 * block.decay * phase.rate).abs() + (block.determinant * phase.value).abs();
-        }
         Self {
-            push: side.away() * (bend + system.gravity) - spring,
-            growth: side.away() * growth,
-            noise: 64.0 * f64::EPSILON * size,
+            push: side.away() * (face.value + system.gravity) - spring,
+            growth: side.away() * face.rate,
+            noise: 64.0 * f64::EPSILON * (system.gravity + spring + face.size),
         }
     }
 

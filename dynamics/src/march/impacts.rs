@@ -5,7 +5,7 @@
 
 use super::March;
 use super::effects::Effects;
-use super::grip::Grip;
+use super::grip::{Bend, Grip};
 use crate::arithmetic::few::Few;
 use crate::arithmetic::matrix::dot;
 use crate::contact::collision::{self, Closed, Outcome};
@@ -291,6 +291,7 @@ impl<E: Effects> March<'_, E> {
         let most = |i: usize| 1_usize << (candidates.len() - 1 - i).min(16);
         for _ in 0..1 + 2 * candidates.len() + (1_usize << candidates.len().min(16)) {
             self.choose_flow()?;
+            self.enter_now();
             let mut wrong = None;
             for (i, candidate) in candidates.iter().enumerate() {
                 grips[i] = self.grip(candidate.particle, candidate.side, candidate.on_stop);
@@ -404,13 +405,17 @@ impl<E: Effects> March<'_, E> {
         Ok(())
     }
 
-    /// How a face holds particle j in the flow in force.
-    pub(super) fn grip(&mut self, j: usize, side: Side, on_stop: bool) -> Grip {
+    /// Enters the flow in force, for [`Self::grip`].
+    pub(super) fn enter_now(&mut self) {
         let drive = self.drive_phase(self.time);
         self.enter_flow(drive);
-        let flow = &self.flow;
-        let (phases, rest) = flow.face(self.system, j, side).evaluate(&self.c, self.level);
-        let grip = Grip::of(self.system, flow, &phases, rest, j, side, on_stop);
+    }
+
+    /// How a face holds particle j in the flow that has been entered.
+    pub(super) fn grip(&self, j: usize, side: Side, on_stop: bool) -> Grip {
+        let row = self.flow.face(self.system, j, side);
+        let bend = Bend::of(&self.flow.blocks, row, &self.c, self.level);
+        let grip = Grip::of(self.system, bend, j, side, on_stop);
         if self.touches_across(j, side) { grip.against(self.push_across(j, side)) } else { grip }
     }
 }

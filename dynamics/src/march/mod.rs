@@ -35,7 +35,7 @@ use crate::flow::{Flow, Rest};
 use crate::march::reach::OutOfReach;
 use crate::march::visits::Visits;
 use crate::motion::{self, End, Fundamental, Settling, Tape};
-use crate::options::{Averaged, Options, StartState, Until};
+use crate::options::{Averaged, Options, Placed, StartState, Until};
 use crate::response::audit::Audit;
 use crate::response::extremes::Lookout;
 use crate::response::{CycleRates, Observed, Response};
@@ -129,7 +129,7 @@ impl<'a, E: Effects> March<'a, E> {
         let most = n + count;
         let contacts = match &options.start {
             StartState::StaticEquilibrium => vec![Contact::Floor; count],
-            StartState::Given { particles, .. } => particles.iter().map(|(contact, ..)| *contact).collect(),
+            StartState::Given { particles, .. } => particles.iter().map(|at| at.contact).collect(),
         };
         let equivalent = system.drive.half_cycles.as_ref().map(|half| half.curve.upper_end());
         let flow = states.flow(system, &contacts, equivalent)?;
@@ -211,7 +211,7 @@ impl<'a, E: Effects> March<'a, E> {
             StartState::Given { q, rate, particles } => {
                 self.q[..q.len()].copy_from_slice(q);
                 self.rate[..rate.len()].copy_from_slice(rate);
-                for (at, (_, gap, rate)) in self.particles.iter_mut().zip(particles) {
+                for (at, Placed { gap, rate, .. }) in self.particles.iter_mut().zip(particles) {
                     *at = Relative { gap: *gap, rate: *rate };
                 }
                 self.settle(&[])
@@ -295,7 +295,8 @@ impl<'a, E: Effects> March<'a, E> {
     /// The state between two cycles, as a run may start from it.
     fn state(&self) -> StartState {
         let n = self.system.mass.order;
-        let particles = self.contacts.iter().zip(&self.particles).map(|(contact, at)| (*contact, at.gap, at.rate));
+        let placed = |(contact, at): (&Contact, &Relative)| Placed { contact: *contact, gap: at.gap, rate: at.rate };
+        let particles = self.contacts.iter().zip(&self.particles).map(placed);
         StartState::Given { q: self.q[..n].to_vec(), rate: self.rate[..n].to_vec(), particles: particles.collect() }
     }
 

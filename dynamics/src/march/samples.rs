@@ -29,8 +29,8 @@ impl<E: Effects> March<'_, E> {
             let kernels = flow.kernels(t);
             flow.advance_all(&kernels, &self.c, flow.drive_after(drive, t), &mut c);
             let anywhere = |row: &Row| {
-                let (phases, rest) = row.evaluate(&self.c, self.level);
-                signals::motion(&flow.blocks, &phases, rest, |k| kernels[k / WIDTH].at(k % WIDTH), t)
+                let kernel = |k: usize| kernels[k / WIDTH].at(k % WIDTH);
+                signals::motion(&flow.blocks, row.phases(&self.c), row.rest(self.level), kernel, t)
             };
             let [displacement, velocity, acceleration, _] = anywhere(flow.rows.row(flow.rows.observed[0]));
             let sampled = |(j, particle): (usize, &Particle)| {

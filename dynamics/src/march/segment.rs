@@ -91,7 +91,7 @@ impl<E: Effects> March<'_, E> {
         if self.is_undamped() {
             flow.enter_doubled([p, rate], self.level, drive, &mut self.c, &mut self.doubled.low);
         } else if self.response.proof.events >= MANY_EVENTS {
-            flow.correct(p, rate, self.level, drive, &mut self.c);
+            flow.correct(&mut self.work, &mut self.c);
         }
     }
 

@@ -3,9 +3,10 @@
 //! A run ends with a whole cycle, so that the next one starts at the phase of the drive at which the last one stopped; carried
 //! are places and rates of the structure and, relative to their faces, of the particles, with their contacts.
 
+use crate::arithmetic::matrix::dot;
 use crate::contact::Side;
-use crate::options::StartState;
-use crate::system::{Contact, HybridSystem, Particle};
+use crate::options::{Placed, StartState};
+use crate::system::{Contact, Face, HybridSystem, Particle};
 
 impl StartState {
     /// The same state in this system. Surfaces that are nearer now displace a particle by no more than they must: one that would
@@ -17,27 +18,29 @@ impl StartState {
         if q.len() != system.mass.order || particles.len() != system.particles.len() {
             return None;
         }
-        let placed = particles.iter().zip(&system.particles).map(|(at, particle)| place(*at, particle));
+        let placed = particles.iter().zip(&system.particles).map(|(at, particle)| place(*at, particle, q));
         Some(Self::Given { q: q.clone(), rate: rate.clone(), particles: placed.collect::<Option<_>>()? })
     }
 }
 
-/// Contact, gap coordinate and relative rate of a particle in its new enclosure.
-fn place((contact, gap, rate): (Contact, f64, f64), particle: &Particle) -> Option<(Contact, f64, f64)> {
+/// A particle in its new enclosure, on a structure that stands so.
+fn place(at: Placed, particle: &Particle, q: &[f64]) -> Option<Placed> {
+    let Placed { contact, gap, rate } = at;
     let side = contact.side();
     if (side == Side::Ceiling || contact.is_between()) && particle.ceiling.is_none() {
         return None;
     }
     if contact == Contact::Flight {
-        let free = if particle.ceiling.is_some() { gap.min(particle.gap) } else { gap };
-        return Some((contact, free, rate));
+        let room = |ceiling: &Face| particle.gap + (dot(&ceiling.row, q) - dot(&particle.floor.row, q));
+        let gap = particle.ceiling.as_ref().map_or(gap, |ceiling| gap.min(room(ceiling)));
+        return Some(Placed { contact, gap, rate });
     }
     let on_stop = matches!(contact, Contact::FloorStop | Contact::CeilingStop);
-    let Some(stop) = side.face(particle).law.stop() else { return (!on_stop).then_some((contact, gap, rate)) };
+    let Some(stop) = side.face(particle).law.stop() else { return (!on_stop).then_some(at) };
     let deepest = -side.away() * stop.length;
     if on_stop {
-        return Some((contact, deepest, 0.0));
+        return Some(Placed { contact, gap: deepest, rate: 0.0 });
     }
     let gap = if side == Side::Ceiling { gap.min(deepest) } else { gap.max(deepest) };
-    Some((contact, gap, rate))
+    Some(Placed { contact, gap, rate })
 }

@@ -138,17 +138,39 @@ pub enum StartState {
         q: Vec<f64>,
         /// Their rates.
         rate: Vec<f64>,
-        /// Contact, gap coordinate and relative rate of each particle; at a ceiling relative to that.
-        particles: Vec<(Contact, f64, f64)>,
+        /// Each particle.
+        particles: Vec<Placed>,
     },
+}
+
+/// Where a particle is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Placed {
+    /// Its contact.
+    pub contact: Contact,
+    /// Gap coordinate, m: its place relative to the face that it has contact with, to its floor in flight.
+    pub gap: f64,
+    /// The rate of that, m/s.
+    pub rate: f64,
+}
+
+impl Placed {
+    /// On its floor, which it does not compress.
+    pub const ON_FLOOR: Self = Self::new(Contact::Floor, 0.0, 0.0);
+
+    /// With this contact, gap coordinate (m) and rate (m/s).
+    #[must_use]
+    pub const fn new(contact: Contact, gap: f64, rate: f64) -> Self {
+        Self { contact, gap, rate }
+    }
 }
 
 impl StartState {
     /// y and y′ of each particle; `None` at static equilibrium.
     pub(crate) fn absolute(&self, system: &HybridSystem) -> Option<Vec<[f64; 2]>> {
         let Self::Given { q, rate, particles } = self else { return None };
-        let absolute = |(&(contact, gap, speed), particle): (&(Contact, f64, f64), &Particle)| {
-            Relative { gap, rate: speed }.absolute(particle, contact.side(), [q, rate])
+        let absolute = |(at, particle): (&Placed, &Particle)| {
+            Relative { gap: at.gap, rate: at.rate }.absolute(particle, at.contact.side(), [q, rate])
         };
         Some(particles.iter().zip(&system.particles).map(absolute).collect())
     }

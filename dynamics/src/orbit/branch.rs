@@ -6,7 +6,7 @@ use super::origin::Origin;
 use super::point::{Along, BranchEnd, BranchError, BranchPoint, Special};
 use super::shot::Shot;
 use super::slowing::{GRAZES, Slowing};
-use super::special::{self, Between};
+use super::special;
 use super::{Orbit, OrbitError};
 use crate::arithmetic::matrix::{dot, length};
 use crate::error::EngineError;
@@ -339,9 +339,9 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         };
         let (last, arc) = met.as_ref().map_or((next, step), |(place, first)| (first, *place));
         Ok(match special::between(&mut self.path, at, last, arc)? {
-            Between::Specials(specials) if met.is_some() => Passed::Origin(specials),
-            Between::Specials(specials) => Passed::Specials(specials),
-            Between::Symmetry => Passed::Symmetry,
+            Some(specials) if met.is_some() => Passed::Origin(specials),
+            Some(specials) => Passed::Specials(specials),
+            None => Passed::Symmetry,
         })
     }
 

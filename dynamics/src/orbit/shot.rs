@@ -13,7 +13,7 @@ use crate::budget;
 use crate::contact::Relative;
 use crate::march;
 use crate::motion::{End, Period, Scale, Tape, kind};
-use crate::options::{Options, StartState};
+use crate::options::{Options, Placed, StartState};
 use crate::response::Response;
 use crate::states::States;
 use crate::system::{Contact, Event, EventKind, HybridSystem};
@@ -385,7 +385,7 @@ pub(super) fn start_at(system: &HybridSystem, at: &End) -> StartState {
                 here = relative(contact);
             }
         }
-        (contact, here.gap, here.rate)
+        Placed { contact, gap: here.gap, rate: here.rate }
     });
     StartState::Given { q: places[..n].to_vec(), rate: rates[..n].to_vec(), particles: particles.collect() }
 }
@@ -393,6 +393,6 @@ pub(super) fn start_at(system: &HybridSystem, at: &End) -> StartState {
 /// The same state at rest in space: absolute places and rates.
 pub(super) fn absolute(system: &HybridSystem, start: &StartState) -> Option<End> {
     let StartState::Given { q, rate, particles } = start else { return None };
-    let contacts: Few<Contact> = particles.iter().map(|(contact, ..)| *contact).collect();
+    let contacts: Few<Contact> = particles.iter().map(|particle| particle.contact).collect();
     Some(End::new([q, rate], &start.absolute(system)?, &contacts))
 }

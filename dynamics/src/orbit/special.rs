@@ -98,26 +98,19 @@ impl<'a> Stretch<'a> {
     }
 }
 
-/// What is between a point and the next.
-pub(super) enum Between {
-    /// Special points in their order.
-    Specials(Vec<(Special, At)>),
-    /// The motion has lost its asymmetry: it comes to the branch that begins to have one there.
-    Symmetry,
-}
-
 /// Special points with their places along a step; `None` where the motion has lost its asymmetry.
 type Found = Option<Vec<(f64, Special, At)>>;
 
-/// The special points between a point and the next, `step` along.
+/// The special points between a point and the next, `step` along, in their order; `None` where the motion has lost its asymmetry, and
+/// comes to the branch that begins to have one there.
 pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
     path: &mut Path<F>,
     from: &At,
     to: &At,
     step: f64,
-) -> Result<Between, BranchError<E>> {
+) -> Result<Option<Vec<(Special, At)>>, BranchError<E>> {
     let whole = Stretch::whole(from, to, step);
-    let Some(mut found) = watched(path, whole)? else { return Ok(Between::Symmetry) };
+    let Some(mut found) = watched(path, whole)? else { return Ok(None) };
     let outside = [Outside::of(from)?, Outside::of(to)?];
     if !explained(outside, &found)? {
         // Two changes in one step hide each other, and one next to a graze is hidden by multipliers without bound.
@@ -135,7 +128,7 @@ pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
         }
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Ok(Between::Specials(found.into_iter().map(|(_, special, at)| (special, at)).collect()))
+    Ok(Some(found.into_iter().map(|(_, special, at)| (special, at)).collect()))
 }
 
 /// Zeros of the test functions whose sign changes along a stretch.

@@ -12,7 +12,7 @@ use crate::contact_state::bank::{Kernels, Phases, Transfer};
 use crate::flow::cells::{Cell, Cells, KEPT, REACH, Tables};
 use crate::flow::parabola::Parabola;
 use crate::flow::signals::Signals;
-use crate::search::polynomial::{Signs, cut, evaluate, may_turn, rises_then_falls, root};
+use crate::search::polynomial::{Signs, THREE_DIGITS, cut, evaluate, may_turn, rises_then_falls, root};
 use crate::search::survey::Motion;
 use crate::search::window::Start;
 use crate::search::{AFTER, Clarity, Found, Guard, Root, Search, is_never_reached};
@@ -214,7 +214,7 @@ impl<'a> Piece<'a> {
         }
         let mut powers = flat(cells.powers(self.tables, self.shares));
         powers.iter_mut().zip(self.base).for_each(|(power, base)| *power += base);
-        let (guess, slope, step) = root(|x| evaluate(&powers, x), signs.crossing(&b, 0.0), 1.0);
+        let (guess, slope, step) = root(|x| evaluate(&powers, x), signs.crossing(&b, 0.0), 1.0, THREE_DIGITS);
         let high = if self.falls_once(&b, signs, is_distance) {
             1.0
         } else {

@@ -82,10 +82,13 @@ const INVERSE_BINOMIAL: Coefficients = {
     table
 };
 
-/// The root below `high` by Newton steps from `x`, to three digits or so. Gives with it the slope before the last step,
-/// and that step.
+/// Share of a root by which the last of Newton's steps to it is to move, for three digits or so: the next would be the square of this.
+pub(crate) const THREE_DIGITS: f64 = 0.03;
+
+/// The root below `high` by Newton steps from `x`, until one moves by no more than `share` of it. Gives with it the slope before the last
+/// step, and that step.
 #[inline(always)]
-pub(crate) fn root(evaluate: impl Fn(f64) -> (f64, f64), mut x: f64, high: f64) -> (f64, f64, f64) {
+pub(crate) fn root(evaluate: impl Fn(f64) -> (f64, f64), mut x: f64, high: f64, share: f64) -> (f64, f64, f64) {
     let (mut lower, mut upper) = (0.0, high);
     let mut last = (x, f64::NAN, f64::INFINITY);
     for _ in 0..60 {
@@ -96,14 +99,13 @@ pub(crate) fn root(evaluate: impl Fn(f64) -> (f64, f64), mut x: f64, high: f64) 
             upper = x
         }
         let mut next = x - value / slope;
-        if !(next > lower && next < upper) {
+        if !(next >= lower && next <= upper) {
             next = 0.5 * (lower + upper);
         }
         let step = (next - x).abs();
         x = next;
         last = (x, slope, step);
-        // Quadratic convergence: the next step would be the square of this.
-        if step < 0.03 * x {
+        if step <= share * x {
             break;
         }
     }

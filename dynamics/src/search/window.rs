@@ -4,7 +4,7 @@ use crate::arithmetic::four::Four;
 use crate::flow::parabola::Parabola;
 use crate::flow::series::{Bounds, Series, Shares, Span};
 use crate::search::polynomial::{
-    Coefficients, DEGREE, Signs, bernstein, come_first, cut, evaluate, may_turn, rises_then_falls, root,
+    Coefficients, DEGREE, Signs, THREE_DIGITS, bernstein, come_first, cut, evaluate, may_turn, rises_then_falls, root,
 };
 
 /// How a guard starts.
@@ -187,7 +187,7 @@ impl Window {
         let mut above = self.a;
         above[0] -= level;
         // Newton has the root to three digits or so; a little before it the polynomial is still above.
-        let sigma = 0.98 * root(|x| evaluate(&above, x), signs.crossing(&self.b, level), 1.0).0;
+        let sigma = 0.98 * root(|x| evaluate(&above, x), signs.crossing(&self.b, level), 1.0, THREE_DIGITS).0;
         if evaluate(&above, sigma).0 > 0.0 { Verdict::Until { sigma } } else { Verdict::Unsure }
     }
 
@@ -200,7 +200,7 @@ impl Window {
         if !signs.change_once() {
             return None;
         }
-        let (guess, slope, step) = root(|x| evaluate(&self.a, x), signs.crossing(&self.b, 0.0), 1.0);
+        let (guess, slope, step) = root(|x| evaluate(&self.a, x), signs.crossing(&self.b, 0.0), 1.0, THREE_DIGITS);
         let order = match self.start {
             Start::Apart => 0,
             Start::Touching { order, .. } => order,
@@ -246,7 +246,8 @@ impl Window {
             // A jump has left the contact untenable: it ends at once.
             return Verdict::Root { guess: 0.0, high: 0.0 };
         }
-        let root = |high: f64| Verdict::Root { guess: root(|x| evaluate(&self.a, x), high, high).0, high };
+        let root =
+            |high: f64| Verdict::Root { guess: root(|x| evaluate(&self.a, x), high, high, THREE_DIGITS).0, high };
         if (falls || concave) && end < -doubt {
             return root(1.0);
         }
@@ -262,7 +263,7 @@ impl Window {
                 return root(1.0);
             }
             let bottom = self.bottom();
-            let value = self.value(bottom);
+            let value = evaluate(&self.a, bottom).0;
             if value > doubt {
                 return Verdict::Clear;
             }
@@ -293,32 +294,9 @@ impl Window {
         evaluate(&self.a, x).0 > self.remainder
     }
 
-    fn value(&self, x: f64) -> f64 {
-        self.a.iter().rev().fold(0.0, |sum, a| sum * x + a)
-    }
-
     /// The root below `high` of the polynomial divided by σ^order, from a guess that is near.
     pub(crate) fn refine(&self, guess: f64, high: f64) -> f64 {
-        let (mut lower, mut upper) = (0.0, high);
-        let mut x = guess;
-        for _ in 0..60 {
-            let (value, slope) = evaluate(&self.a, x);
-            if value > 0.0 {
-                lower = x
-            } else {
-                upper = x
-            }
-            let mut next = x - value / slope;
-            if !(next >= lower && next <= upper) {
-                next = 0.5 * (lower + upper);
-            }
-            let step = (next - x).abs();
-            x = next;
-            if !(step > 2.0 * f64::EPSILON * x) {
-                break;
-            }
-        }
-        x
+        root(|x| evaluate(&self.a, x), guess, high, 2.0 * f64::EPSILON).0
     }
 }
 

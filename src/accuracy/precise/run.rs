@@ -8,7 +8,7 @@ use super::matrix::{Square, dot};
 use super::power::{scaled, sin_cos, square};
 use super::root::{both, extremes, first_negative, value};
 use super::series::{Phase, Series, State, TERMS, Touch, along, doubles};
-use crate::dynamics::{Contact, CycleRates, HybridSystem, Law, Observed, Options, Response, StartState, Tick};
+use crate::dynamics::{Contact, CycleRates, HybridSystem, Law, Observed, Options, Placed, Response, StartState, Tick};
 
 /// Events at one instant before the run is given up.
 const MOST_AT_AN_INSTANT: u32 = 64;
@@ -160,7 +160,7 @@ impl<'a> Run<'a> {
             StartState::Given { q, rate, particles } => {
                 self.state.q = doubles(q);
                 self.state.v = doubles(rate);
-                for (j, (contact, gap, speed)) in particles.iter().enumerate() {
+                for (j, Placed { contact, gap, rate: speed }) in particles.iter().enumerate() {
                     let ceiling = matches!(contact, Contact::Ceiling);
                     let particle = &self.system.particles[j];
                     let side =

@@ -6,8 +6,8 @@
 use std::f64::consts::PI;
 
 use shotdamp::dynamics::{
-    Contact, Drive, Event, EventKind, Face, HybridSystem, Law, Matrix, Options, Particle, Response, StartState, Stop,
-    Tick, TraceRequest, event_driven,
+    Contact, Drive, Event, EventKind, Face, HybridSystem, Law, Matrix, Options, Particle, Placed, Response, StartState,
+    Stop, Tick, TraceRequest, event_driven,
 };
 
 use super::bench::{GRAVITY, note, within};
@@ -277,7 +277,7 @@ pub(super) fn springs_of_floors_and_ceilings_push_as_a_runge_kutta_integration_s
         let q: Vec<f64> = (0..n).map(|_| dice.between(-0.02, 0.02)).collect();
         let rate: Vec<f64> = (0..n).map(|_| dice.between(-2.0, 2.0)).collect();
         let gaps: Vec<f64> = system.particles.iter().map(|particle| particle.gap * dice.between(0.1, 0.9)).collect();
-        let particles = gaps.iter().map(|gap| (Contact::Flight, *gap, 0.0)).collect();
+        let particles = gaps.iter().map(|gap| Placed::new(Contact::Flight, *gap, 0.0)).collect();
         let start = StartState::Given { q: q.clone(), rate: rate.clone(), particles };
         let options = Options { start, ..cycles(1) };
         let response = go(&system, &options);
@@ -320,7 +320,7 @@ pub(super) fn an_array_without_loss_runs_back_to_its_start() {
         let q: Vec<f64> = (0..n).map(|_| dice.between(-0.02, 0.02)).collect();
         let rate: Vec<f64> = (0..n).map(|_| dice.between(-1.0, 1.0)).collect();
         let begin: Vec<_> =
-            system.particles.iter().map(|particle| (Contact::Flight, 0.5 * particle.gap, 0.3)).collect();
+            system.particles.iter().map(|particle| Placed::new(Contact::Flight, 0.5 * particle.gap, 0.3)).collect();
         let start = StartState::Given { q: q.clone(), rate: rate.clone(), particles: begin.clone() };
         let forwards = Options { start, ..cycles(1) };
         let there = go(&system, &forwards);
@@ -332,12 +332,11 @@ pub(super) fn an_array_without_loss_runs_back_to_its_start() {
             .zip(&there.final_particles)
             .map(|(particle, [y, w])| {
                 let (u, du) = (y - dot(&particle.floor.row, &q_end), w - dot(&particle.floor.row, &rate_end));
-                let contact = match (particle.floor.law, u) {
-                    (Law::Resilient { .. }, ..0.0) => (Contact::Floor, u),
-                    _ if u > particle.gap => (Contact::Ceiling, u - particle.gap),
-                    _ => (Contact::Flight, u),
-                };
-                (contact.0, contact.1, -du)
+                match (particle.floor.law, u) {
+                    (Law::Resilient { .. }, ..0.0) => Placed::new(Contact::Floor, u, -du),
+                    _ if u > particle.gap => Placed::new(Contact::Ceiling, u - particle.gap, -du),
+                    _ => Placed::new(Contact::Flight, u, -du),
+                }
             })
             .collect();
         let backwards = Options { start: StartState::Given { q: q_end, rate: turned, particles }, ..cycles(1) };
@@ -484,7 +483,7 @@ pub(super) fn two_particles_that_land_at_once_land_as_one_of_both_masses() {
         let start = |count: usize| StartState::Given {
             q: vec![0.0],
             rate: vec![0.0],
-            particles: vec![(Contact::Flight, 0.02, 0.0); count],
+            particles: vec![Placed::new(Contact::Flight, 0.02, 0.0); count],
         };
         system.particles = vec![particle(0.1, 0.05, vec![1.0], [law, law]); 2];
         let two = go(&system, &Options { start: start(2), ..cycles(3) });
@@ -504,7 +503,7 @@ pub(super) fn particles_that_land_at_once_on_a_rigid_floor_leave_no_margin() {
     (system.gravity, system.drive) = (1.0, quiet(1.2));
     system.particles = [1.0; 2].map(|mass| particle(mass, 100.0, unit(1, 0), [rigid(0.5); 2])).to_vec();
     let margin = |apart: f64| {
-        let particles = [0.0, apart].map(|more| (Contact::Flight, 0.5 + more, 0.0)).to_vec();
+        let particles = [0.0, apart].map(|more| Placed::new(Contact::Flight, 0.5 + more, 0.0)).to_vec();
         let start = StartState::Given { q: vec![0.0], rate: vec![0.0], particles };
         event_driven(&system, &Options { start, ..cycles(1) }).unwrap().proof.smallest_margin
     };
@@ -527,7 +526,7 @@ pub(super) fn a_blow_from_above_leaves_the_neighbour_that_loses_its_floor() {
         let start = StartState::Given {
             q: vec![-0.1 * GRAVITY * rows[0] / 1000.0],
             rate: vec![0.0],
-            particles: vec![(Contact::Floor, 0.0, 0.0), (Contact::Flight, 1e-9, -1.0)],
+            particles: vec![Placed::ON_FLOOR, Placed::new(Contact::Flight, 1e-9, -1.0)],
         };
         go(&system, &Options { start, ..cycles(1) })
     };

@@ -5,7 +5,9 @@ use std::time::Duration;
 
 use serde_json::Value;
 use shotdamp::accuracy::precise::precise;
-use shotdamp::dynamics::{Contact, Event, EventKind, HybridSystem, Options, Response, StartState, event_driven};
+use shotdamp::dynamics::{
+    Contact, Event, EventKind, HybridSystem, Options, Placed, Response, StartState, event_driven,
+};
 use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, SingleMass, Surface, compile};
 
 /// m/s².
@@ -112,7 +114,11 @@ pub fn scene(mass: SingleMass, gravity: f64, damper: Damper, excitation: Excitat
 
 /// A base at x, x′, with the particle in flight at u, u′.
 pub fn in_flight(base: [f64; 2], gap: [f64; 2]) -> StartState {
-    StartState::Given { q: vec![base[0]], rate: vec![base[1]], particles: vec![(Contact::Flight, gap[0], gap[1])] }
+    StartState::Given {
+        q: vec![base[0]],
+        rate: vec![base[1]],
+        particles: vec![Placed::new(Contact::Flight, gap[0], gap[1])],
+    }
 }
 
 /// One cycle from a start, every event kept.

@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::{Matrix2, Vector2};
 use shotdamp::dynamics::{
     Along, Branch, BranchEnd, BranchPoint, Contact, Drive, EventKind, Face, HybridSystem, Law, Matrix, Options, Orbit,
-    Particle, Special, StartState, Tick,
+    Particle, Placed, Special, StartState, Tick,
 };
 use shotdamp::scene::Excitation;
 
@@ -159,7 +159,8 @@ fn doubled_motions_end_where_they_meet_the_shorter_one_and_branches_from_both_en
     };
     let along = Along { from: 0.5, to: 0.9, step: 0.02, points: 200 };
     let system = systems(0.71).expect("it compiles");
-    let start = StartState::Given { q: vec![0.01], rate: vec![0.1], particles: vec![(Contact::Flight, 0.01, -0.2)] };
+    let start =
+        StartState::Given { q: vec![0.01], rate: vec![0.1], particles: vec![Placed::new(Contact::Flight, 0.01, -0.2)] };
     let settled = Options { skip: 200, average: 50, start, ..Options::default() };
     let orbit = Orbit::after(&system, &settled).expect("it settles");
     assert_eq!(orbit.cycles, 4);

@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 use std::ops::Index;
 
 use nalgebra::{Matrix2, Matrix4, Vector4};
-use shotdamp::dynamics::{Contact, Event, EventKind, Options, Response, StartState};
+use shotdamp::dynamics::{Contact, Event, EventKind, Options, Placed, Response, StartState};
 use shotdamp::scene::{Damper, Excitation, LimitStop, PulseShape, Scene, Walls};
 
 use crate::structures;
@@ -236,8 +236,7 @@ pub(super) fn an_inelastic_ball_leaves_and_lands_at_the_phases_of_theory() {
     let (given, value) = open("inelastic-ball-first-flight-G3");
     let omega = given.number("angular_frequency");
     let (table, amplitude) = table(&given, given.number("dimensionless_acceleration"));
-    let start =
-        StartState::Given { q: vec![0.0], rate: vec![amplitude * omega], particles: vec![(Contact::Floor, 0.0, 0.0)] };
+    let start = StartState::Given { q: vec![0.0], rate: vec![amplitude * omega], particles: vec![Placed::ON_FLOOR] };
     let options = Options { skip: 0, average: 2, start, record_events: 2, ..Options::default() };
     let response = run(&table, &options);
     assert_eq!(response.events[0].kind, EventKind::FloorRelease);
@@ -505,7 +504,11 @@ pub(super) fn a_ceiling_that_floats_is_a_third_body() {
     let mut damper = damper(particle, given.number("gap"), surface);
     damper.walls = Some(Walls { stiffness: 0.0, damping: 0.0, ceiling_mass: ceiling });
     let collide = scene(base(given.number("base_mass") + ceiling, 0.0, 0.0), 0.0, damper, nothing(0.1));
-    let start = StartState::Given { q: vec![0.0; 2], rate: vec![0.0; 2], particles: vec![(Contact::Flight, 0.0, 1.0)] };
+    let start = StartState::Given {
+        q: vec![0.0; 2],
+        rate: vec![0.0; 2],
+        particles: vec![Placed::new(Contact::Flight, 0.0, 1.0)],
+    };
     let response = run(&collide, &once(start));
     let [contact, release] = [EventKind::CeilingContact, EventKind::CeilingRelease].map(|k| only(&response, k)[0]);
     close("contact time", release.time - contact.time, value[0], 1e-12);
@@ -537,7 +540,7 @@ pub(super) fn a_particle_rests_until_the_base_falls_faster_than_it() {
         let start = StartState::Given {
             q: vec![-lag * scale - particle * GRAVITY / stiffness],
             rate: vec![omega * stiff * scale],
-            particles: vec![(Contact::Floor, 0.0, 0.0)],
+            particles: vec![Placed::ON_FLOOR],
         };
         let response = run(&rest(force), &Options { skip: 0, average: 3, start, ..Options::default() });
         assert_eq!(response.proof.events > 0, leaves, "at {factor} of the lift-off force");
@@ -612,7 +615,7 @@ pub(super) fn a_resting_particle_and_its_floor_have_their_two_frequencies() {
         let start = StartState::Given {
             q: vec![sunk[0] + amplitude],
             rate: vec![0.0],
-            particles: vec![(Contact::Floor, sunk[1] + amplitude * (ratio - 1.0), 0.0)],
+            particles: vec![Placed::new(Contact::Floor, sunk[1] + amplitude * (ratio - 1.0), 0.0)],
         };
         let response = run(&rest, &once(start));
         assert_eq!(response.proof.events, 0);

@@ -272,6 +272,7 @@ fn measured(scene: &Scene, carried: f64) -> Evaluated {
         round_period_to: None,
         ensemble: 8,
         named: NamedRows::Results,
+        mean_of: 0,
     };
     let request = Request { measures: &MEASURES, rigour: Rigour::Result, ..Request::default() };
     evaluate(subject, SolverChoice::EventDriven, &settings, &request).expect("it runs")

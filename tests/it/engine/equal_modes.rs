@@ -1,6 +1,6 @@
 //! Frequencies that are equal, or equal to rounding: plates that are square, masses that are alike.
 
-use shotdamp::dynamics::{Contact, HybridSystem, Matrix, Options, Particle, StartState, event_driven};
+use shotdamp::dynamics::{HybridSystem, Matrix, Options, Particle, Placed, StartState, event_driven};
 
 use super::arrays::{Dice, chain, cycles, particle, quiet, spring, unit};
 use super::bench::within;
@@ -65,11 +65,8 @@ pub(super) fn dampers_that_are_alike_on_masses_that_are_alike_do_not_disturb_eac
             |i: usize| -> Particle { particle(0.05, 0.03, unit(count, i), [spring(800.0, 0.4), spring(3000.0, 8.0)]) };
         system.particles = (0..count).map(on).collect();
         system.drive = quiet(0.5);
-        let start = StartState::Given {
-            q: vec![0.0; count],
-            rate: vec![1.2; count],
-            particles: vec![(Contact::Floor, 0.0, 0.0); count],
-        };
+        let start =
+            StartState::Given { q: vec![0.0; count], rate: vec![1.2; count], particles: vec![Placed::ON_FLOOR; count] };
         let options = Options { start, ..cycles(1) };
         event_driven(&system, &options).unwrap_or_else(|error| panic!("{count}: {error}"))
     };

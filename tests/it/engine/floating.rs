@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use shotdamp::accuracy::precise::precise;
 use shotdamp::dynamics::{
-    Contact, Drive, EventKind, HybridSystem, Law, Matrix, Options, Response, StartState, Tick, event_driven,
+    Contact, Drive, EventKind, HybridSystem, Law, Matrix, Options, Placed, Response, StartState, Tick, event_driven,
 };
 use shotdamp::scene::{Excitation, PulseShape, Scene, Walls};
 
@@ -51,7 +51,7 @@ fn carry(system: &mut HybridSystem, floor: Option<Law>, gap: f64) {
 
 /// So many cycles of a structure that starts at zero with these rates, its particle on the floor: by events, and in many digits.
 fn in_both_accuracies(what: &str, system: &HybridSystem, rate: Vec<f64>, cycles: u32) -> [Response; 2] {
-    let particles = vec![(Contact::Floor, 0.0, 0.0); system.particles.len()];
+    let particles = vec![Placed::ON_FLOOR; system.particles.len()];
     let start = StartState::Given { q: vec![0.0; rate.len()], rate, particles };
     let options = Options { skip: 0, average: cycles, audit: true, start, ..Options::default() };
     let own = event_driven(system, &options).unwrap_or_else(|error| panic!("{what}: {error}"));
@@ -136,7 +136,7 @@ pub(super) fn several_motions_that_nothing_brings_back_move_as_they_do_in_many_d
 pub(super) fn a_particle_on_it_makes_it_sink() {
     let (mass, particle, damping) = (1.0, 0.25, 2.0);
     let terminal = -particle * GRAVITY / damping;
-    let rest = StartState::Given { q: vec![0.0], rate: vec![0.0], particles: vec![(Contact::Floor, 0.0, 0.0)] };
+    let rest = StartState::Given { q: vec![0.0], rate: vec![0.0], particles: vec![Placed::ON_FLOOR] };
     let held = scene(base(mass, 0.0, damping), GRAVITY, damper(particle, f64::INFINITY, rigid(0.0)), nothing(0.9));
     let response = run(&held, &once(rest.clone()));
     let rate = damping / (mass + particle);
@@ -175,7 +175,7 @@ pub(super) fn bounces_on_a_sliding_base_lose_nothing_but_to_its_dashpot() {
 }
 
 fn on_floor() -> StartState {
-    StartState::Given { q: vec![0.0], rate: vec![0.0], particles: vec![(Contact::Floor, 0.0, 0.0)] }
+    StartState::Given { q: vec![0.0], rate: vec![0.0], particles: vec![Placed::ON_FLOOR] }
 }
 
 #[test]
@@ -184,8 +184,11 @@ pub(super) fn walls_of_a_dashpot_alone_bring_the_ceiling_to_rest_where_they_hold
     let mut enclosure = damper(0.05, f64::INFINITY, rigid(0.0));
     enclosure.walls = Some(Walls { stiffness: 0.0, damping: 5.0, ceiling_mass: 0.2 });
     let swing = scene(base(1.0, 1000.0, 3.0), 0.0, enclosure.clone(), nothing(40.0));
-    let start =
-        StartState::Given { q: vec![0.0, 0.0], rate: vec![1.0, 0.0], particles: vec![(Contact::Flight, 10.0, 0.0)] };
+    let start = StartState::Given {
+        q: vec![0.0, 0.0],
+        rate: vec![1.0, 0.0],
+        particles: vec![Placed::new(Contact::Flight, 10.0, 0.0)],
+    };
     let response = run(&swing, &once(start));
     within("base at rest", response.final_displacement, 0.0, 1e-13);
     within("and still", response.final_velocity, 0.0, 1e-13);
@@ -196,8 +199,11 @@ pub(super) fn walls_of_a_dashpot_alone_bring_the_ceiling_to_rest_where_they_hold
     enclosure.ceiling = resilient(2000.0, 2.0);
     let drive = Excitation::Harmonic { force: 30.0, angular_frequency: 30.0 };
     let shaken = scene(base(1.0, 1000.0, 3.0), GRAVITY, enclosure, drive);
-    let start =
-        StartState::Given { q: vec![0.0, 0.0], rate: vec![0.0, 0.0], particles: vec![(Contact::Flight, 0.1, 0.0)] };
+    let start = StartState::Given {
+        q: vec![0.0, 0.0],
+        rate: vec![0.0, 0.0],
+        particles: vec![Placed::new(Contact::Flight, 0.1, 0.0)],
+    };
     let response =
         run(&shaken, &Options { skip: 5, average: 50, start, audit: true, record_events: 1000, ..Options::default() });
     assert!(!only(&response, EventKind::CeilingContact).is_empty());

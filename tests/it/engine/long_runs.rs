@@ -1,6 +1,8 @@
 //! Runs so long that what rounding does in each cycle would show.
 
-use shotdamp::dynamics::{Contact, Event, HybridSystem, Law, Matrix, Options, Response, StartState, dot, event_driven};
+use shotdamp::dynamics::{
+    Contact, Event, HybridSystem, Law, Matrix, Options, Placed, Response, StartState, dot, event_driven,
+};
 use shotdamp::scene::{Excitation, Scene, Surface};
 
 use super::bench::{
@@ -11,7 +13,7 @@ use super::bench::{
 fn energy(system: &HybridSystem, state: &StartState) -> f64 {
     let StartState::Given { q, rate, particles } = state else { panic!("a state") };
     let structure = 0.5 * (system.mass.form(rate, rate) + system.stiffness.form(q, q));
-    system.particles.iter().zip(particles).fold(structure, |sum, (particle, &(contact, gap, speed))| {
+    system.particles.iter().zip(particles).fold(structure, |sum, (particle, &Placed { contact, gap, rate: speed })| {
         let face = if contact == Contact::Ceiling { particle.ceiling.as_ref() } else { None };
         let (face, height) = face.map_or((&particle.floor, 0.0), |ceiling| (ceiling, particle.gap));
         let (y, w) = (dot(&face.row, q) + height + gap, dot(&face.row, rate) + speed);
@@ -27,7 +29,7 @@ fn energy(system: &HybridSystem, state: &StartState) -> f64 {
 fn swing(gravity: f64, dampers: &[(f64, f64, Surface)]) -> (HybridSystem, StartState) {
     let all = dampers.iter().map(|(mass, gap, surface)| damper(*mass, *gap, surface.clone())).collect();
     let swing = Scene::on_one_mass(base(1.0, 1000.0, 0.0), gravity, all, nothing(0.198_691_765_315_922));
-    let particles = dampers.iter().map(|(_, gap, _)| (Contact::Flight, 0.6 * gap, -0.4)).collect();
+    let particles = dampers.iter().map(|(_, gap, _)| Placed::new(Contact::Flight, 0.6 * gap, -0.4)).collect();
     (system(&swing), StartState::Given { q: vec![0.02], rate: vec![0.7], particles })
 }
 

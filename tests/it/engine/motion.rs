@@ -4,8 +4,8 @@
 use std::f64::consts::{PI, TAU};
 
 use shotdamp::dynamics::{
-    Contact, EngineError, EventKind, Exponent, HybridSystem, Law, Motion, MotionKind, Multiplier, Options, StartState,
-    Stop, event_driven, fundamental_matrix,
+    Contact, EngineError, EventKind, Exponent, HybridSystem, Law, Motion, MotionKind, Multiplier, Options, Placed,
+    StartState, Stop, event_driven, fundamental_matrix,
 };
 use shotdamp::scene::{Damper, Excitation, LimitStop, Scene};
 
@@ -295,7 +295,7 @@ fn start(system: &HybridSystem, state: &[f64]) -> Options {
     let on = |row: &[f64], x: &[f64]| row.iter().zip(x).map(|(a, b)| a * b).sum::<f64>();
     let particles = system.particles.iter().enumerate().map(|(j, particle)| {
         let row = &particle.floor.row;
-        (Contact::Flight, places[n + j] - on(row, &places[..n]), rates[n + j] - on(row, &rates[..n]))
+        Placed::new(Contact::Flight, places[n + j] - on(row, &places[..n]), rates[n + j] - on(row, &rates[..n]))
     });
     let given =
         StartState::Given { q: places[..n].to_vec(), rate: rates[..n].to_vec(), particles: particles.collect() };

@@ -167,7 +167,7 @@ fn an_orbit_is_the_same_wherever_in_its_period_a_cycle_begins() {
         let run = Options { skip: 0, average: 400, ..Options::default() };
         let orbit = Orbit::after(&begun, &run).expect("it settles");
         let StartState::Given { particles, .. } = &orbit.start else { panic!("an orbit starts somewhere") };
-        (particles[0].0, [orbit.response.window().rms_velocity(), orbit.multipliers[0].modulus])
+        (particles[0].contact, [orbit.response.window().rms_velocity(), orbit.multipliers[0].modulus])
     });
     let begins: Vec<(Contact, [f64; 2])> = begins.collect();
     // With the particle in flight, at either face, and let go by either.

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use shotdamp::dynamics::{
-    Allowance, Contact, Drive, EngineError, Face, Harmonic, HybridSystem, Law, Limit, Options, Particle, Proof,
+    Allowance, Contact, Drive, EngineError, Face, Harmonic, HybridSystem, Law, Limit, Options, Particle, Placed, Proof,
     Response, SampledParticle, StartState, Tick, TraceRequest, event_driven,
 };
 use shotdamp::scene::{ContactDamping, ContactEnd, Excitation, Scene, Surface, compile};
@@ -160,7 +160,7 @@ fn spread(system: &HybridSystem, options: &Options, own: &Response, neighbours: 
         if let StartState::Given { particles, .. } = &mut start {
             // Each by itself: particles that move as one are told apart by rounding.
             let mut dice = Dice(i);
-            for (_, gap, rate) in particles.iter_mut().filter(|(contact, ..)| *contact == Contact::Flight) {
+            for Placed { gap, rate, .. } in particles.iter_mut().filter(|at| at.contact == Contact::Flight) {
                 *gap *= 1.0 + 1e-12 * dice.between(-1.0, 1.0);
                 *rate *= 1.0 + 1e-12 * dice.between(-1.0, 1.0);
             }

@@ -2,8 +2,8 @@
 //! among them.
 
 use shotdamp::dynamics::{
-    Contact, EventKind, Face, FarSurface, HybridSystem, Law, Matrix, Method, Options, Particle, Response, StartState,
-    Stop, TraceRequest, event_driven, out_of_reach,
+    Contact, EventKind, Face, FarSurface, HybridSystem, Law, Matrix, Method, Options, Particle, Placed, Response,
+    StartState, Stop, TraceRequest, event_driven, out_of_reach,
 };
 use shotdamp::scene::compile;
 
@@ -82,7 +82,8 @@ fn thrown(speed: f64, gap: f64, stop: Option<Stop>) -> (HybridSystem, Options) {
     system.particles.push(particle(0.01, gap, vec![1.0], [law, law]));
     system.drive = quiet(1.0);
     let sag = 0.01 * system.gravity / system.stiffness.at(0, 0);
-    let start = StartState::Given { q: vec![-sag], rate: vec![0.0], particles: vec![(Contact::Flight, 0.0, speed)] };
+    let start =
+        StartState::Given { q: vec![-sag], rate: vec![0.0], particles: vec![Placed::new(Contact::Flight, 0.0, speed)] };
     (system, Options { start, ..cycles(2) })
 }
 

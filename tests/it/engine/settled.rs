@@ -73,7 +73,15 @@ fn a_settled_run_has_the_averages_of_a_long_one() {
 fn measured(scene: &Scene, until: Until, average: u32) -> Evaluated {
     let bare = Scene { dampers: Vec::new(), ..scene.clone() };
     let subject = Subject { scene: scene.clone(), undamped: Some(bare), comparison: None, mode: 1 };
-    let settings = Settings { skip: 25, average, until, round_period_to: None, ensemble: 8, named: NamedRows::Results };
+    let settings = Settings {
+        skip: 25,
+        average,
+        until,
+        round_period_to: None,
+        ensemble: 8,
+        named: NamedRows::Results,
+        mean_of: 0,
+    };
     let measures = [
         Measure::VelocityRatio,
         Measure::FloorImpacts,

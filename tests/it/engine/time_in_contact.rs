@@ -23,8 +23,15 @@ const MEASURES: [Measure; 5] = [
 
 fn measured(scene: Scene, skip: u32, average: u32) -> [f64; 5] {
     let subject = Subject { scene, undamped: None, comparison: None, mode: 1 };
-    let settings =
-        Settings { skip, average, until: Until::Cycles, round_period_to: None, ensemble: 0, named: NamedRows::Results };
+    let settings = Settings {
+        skip,
+        average,
+        until: Until::Cycles,
+        round_period_to: None,
+        ensemble: 0,
+        named: NamedRows::Results,
+        mean_of: 0,
+    };
     let request = Request { measures: &MEASURES, ..Request::default() };
     let evaluated = evaluate(subject, SolverChoice::EventDriven, &settings, &request).expect("the scene has an answer");
     std::array::from_fn(|i| evaluated.measured[i].value)

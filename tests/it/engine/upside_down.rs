@@ -1,7 +1,7 @@
 //! Upside down: what a floor does, a ceiling does under gravity that pulls upwards. No contact state, no event and no bound may know
 //! which of the two is called the floor.
 
-use shotdamp::dynamics::{Contact, HybridSystem, Law, Options, Particle, Response, StartState, dot};
+use shotdamp::dynamics::{Contact, HybridSystem, Law, Options, Particle, Placed, Response, StartState, dot};
 use shotdamp::scene::compile;
 
 use super::arrays::cycles;
@@ -57,14 +57,14 @@ fn mirrored(contact: Contact) -> Contact {
 fn state_upside_down(system: &HybridSystem, state: &StartState) -> StartState {
     let StartState::Given { q, rate, particles } = state else { panic!("a state at the end is given: {state:?}") };
     let turned = |x: &[f64]| x.iter().map(|x| -x).collect::<Vec<_>>();
-    let each = system.particles.iter().zip(particles).map(|(particle, &(contact, gap, gap_rate))| {
+    let each = system.particles.iter().zip(particles).map(|(particle, &Placed { contact, gap, rate: gap_rate })| {
         let ceiling = particle.ceiling.as_ref().expect("both faces");
         if !is_enclosed(particle) && mirrored(contact) != contact {
-            return (mirrored(contact), -gap, -gap_rate);
+            return Placed::new(mirrored(contact), -gap, -gap_rate);
         }
         // Counted from the floor before and after, which are two faces.
         let apart = |x: &[f64]| dot(&particle.floor.row, x) - dot(&ceiling.row, x);
-        (contact, particle.gap - gap - apart(q), -gap_rate - apart(rate))
+        Placed::new(contact, particle.gap - gap - apart(q), -gap_rate - apart(rate))
     });
     StartState::Given { q: turned(q), rate: turned(rate), particles: each.collect() }
 }

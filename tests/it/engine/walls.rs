@@ -4,7 +4,7 @@
 //! a particle held by one of them may be met by the other.
 
 use shotdamp::dynamics::{
-    Contact, EngineError, EventKind, Face, HybridSystem, Law, Matrix, Options, Particle, Response, StartState,
+    Contact, EngineError, EventKind, Face, HybridSystem, Law, Matrix, Options, Particle, Placed, Response, StartState,
     event_driven,
 };
 
@@ -96,8 +96,7 @@ pub(super) fn rigid_faces_that_would_both_hold_a_particle_are_refused_by_name() 
     let run = |laws| {
         let mut system = model_3([0.2, 100.0, 0.0], 0.05, 0.01, laws);
         system.drive = quiet(0.4);
-        let start =
-            StartState::Given { q: vec![0.0, 0.0], rate: vec![0.0, -3.0], particles: vec![(Contact::Floor, 0.0, 0.0)] };
+        let start = StartState::Given { q: vec![0.0, 0.0], rate: vec![0.0, -3.0], particles: vec![Placed::ON_FLOOR] };
         event_driven(&system, &Options { start, ..cycles(1) })
     };
     let refused = run(rigid);
@@ -140,7 +139,7 @@ pub(super) fn a_mass_between_two_springs_and_dashpots_is_an_oscillator_of_both()
             let start = StartState::Given {
                 q: vec![q],
                 rate: vec![rates[0]],
-                particles: vec![(Contact::Both, y - q, rates[1] - rates[0])],
+                particles: vec![Placed::new(Contact::Both, y - q, rates[1] - rates[0])],
             };
             let response = event_driven(&system, &Options { start, ..cycles(5) }).unwrap();
             let ends = [[response.final_displacement, response.final_velocity], response.final_particles[0]];
