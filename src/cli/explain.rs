@@ -10,7 +10,7 @@ use super::select::{matches, no_entry, open};
 use crate::calibrate::{CalibrationError, Read, moved_alone};
 use crate::dynamics::is_interrupted;
 use crate::experiment::{AssumptionName, AssumptionValue, Experiment};
-use crate::reference::{Found, Judged, Moved};
+use crate::reference::{Found, Judged, Moved, Verdict};
 use crate::report::{Trial, entry, explanations, judge_all, untried};
 use crate::study::{Engine, EventHandler, IgnoreEvents, Layout, Progress, RunError, Study};
 use crate::text::number::significant;
@@ -81,14 +81,27 @@ fn tried(study: &Study, judged: &Judged, common: &Args) -> Result<Vec<Trial>, Cl
     Ok(trials)
 }
 
-/// A number keeps the uncertainties that it has in force.
+/// As the page would judge it: a number keeps the uncertainties that it has in force, and an entry its part in fits and what it is blocked by.
 fn moved(judged: &Judged, read: Read, fitted: bool) -> Moved {
     let (found, value, verdict) = match read.found {
         Found::Number { simulated, .. } => {
             let verdict = judged.comparison.as_ref().map_or(read.verdict, |known| known.verdict_of(simulated, fitted));
             (significant(simulated, 4), Some(simulated), verdict)
         }
-        Found::Claim { holds } => (if holds { "holds" } else { "does not hold" }.into(), None, read.verdict),
+        Found::Claim { holds } => {
+            let found = match read.verdict {
+                Verdict::Undecidable => "too close to call",
+                _ if holds => "holds",
+                _ => "does not hold",
+            };
+            let verdict = match read.verdict {
+                Verdict::Missing => Verdict::Missing,
+                _ if !judged.blocked_by.is_empty() => Verdict::Blocked,
+                Verdict::Reproduced if fitted => Verdict::Fitted,
+                other => other,
+            };
+            (found.into(), None, verdict)
+        }
         Found::Nothing(reason) => (reason, None, read.verdict),
     };
     Moved { variant: String::new(), found, value, kept: verdict == judged.verdict, verdict }

@@ -344,7 +344,7 @@ impl Decimal<'_> {
 pub(super) fn parse_percent(text: &str) -> Option<f64> {
     let text = text.trim();
     let (number, unit) = split_number(text).ok()?;
-    (unit.trim() == "%").then(|| number.value(-2, text).ok())?
+    (unit.trim() == "%").then(|| number.value(-2, text).ok()).flatten()
 }
 
 /// The number in front and the rest.

@@ -320,7 +320,7 @@ impl<'a> Panel<'a> {
         Some([frame.at(0.0, up), frame.at(1.0, up)])
     }
 
-    /// All that a legend or the label of a guide must not cover.
+    /// All that a legend or a label must not cover.
     pub(super) fn obstacles(&self, frame: &Rect) -> Obstacles {
         let mut obstacles = Obstacles::default();
         for curve in &self.curves {

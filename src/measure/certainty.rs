@@ -324,8 +324,8 @@ impl<'a> Ensemble<'a> {
         self.measures.iter().zip(&self.statistics)
     }
 
-    /// Whether the means of so many members are sharp enough, for a number that is the mean over so many cases: their errors are
-    /// independent.
+    /// Whether the means of so many members are sharp enough, for a number that is the mean over so many cases. Their errors are
+    /// independent, so that the mean of n alike is √n times as sharp as each.
     fn is_sharp(&self, members: u32, cases: u32) -> bool {
         let EnsembleSize { early, half_width, .. } = ENSEMBLE_OF_A_VARIANT;
         let half_width = half_width * f64::from(cases.max(1)).sqrt();

@@ -60,7 +60,7 @@ pub struct EnsembleSize {
     /// Members at most.
     pub most: u32,
     /// Half the interval in which each mean lies with a probability of 95 %, relative to the mean, at which it is enough; √n times that
-    /// where a number is the mean over n cases.
+    /// in each of n cases that a number is the mean over: it is known as well where they are about equal.
     pub half_width: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Measures read off responses.
+//! Measures read off responses, and what rounding leaves of them.
 
 use std::f64::consts::TAU;
 

@@ -131,7 +131,7 @@ impl Placeholder {
             None => (None, None),
             Some((entry, moved)) => (Some(entry.trim().to_owned()), moved.map(|moved| moved.trim().to_owned())),
         };
-        // Under a move one number or word comes out.
+        // Under a move one number comes out.
         if moved.is_some() && what != Wanted::Here(1)
             || entry.as_ref().is_some_and(String::is_empty)
             || moved.as_ref().is_some_and(|moved| !moved.contains('='))

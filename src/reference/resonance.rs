@@ -13,7 +13,7 @@ use super::name::Column;
 use super::printed::Printed;
 use super::selection::Selection;
 use super::text::{symbol, with_unit};
-use super::view::{Absence, Line, View};
+use super::view::{Absence, Cell, Line, View};
 use crate::experiment::At;
 use crate::measure::column_words;
 use crate::optimise::{Parabola, Point};
@@ -122,7 +122,7 @@ impl Peak {
 
     /// The highest grid point of the peak that is meant.
     fn choose(&self, line: &Line) -> Result<usize, Absence> {
-        let stands_out = |&(x, prominence): &(f64, super::view::Cell)| {
+        let stands_out = |&(x, prominence): &(f64, Cell)| {
             let at = line.x.partition_point(|&other| other < x);
             let enough = prominence.value >= self.prominence * line.y[at].value.abs();
             (enough && prominence.value > COVERAGE * prominence.run).then_some(at)

@@ -1,4 +1,4 @@
-//! What the engine is asked for a row.
+//! What the engine is asked for a row: which histories and shapes, and with how much rigour.
 
 use super::evaluate::Simulation;
 use super::job::Job;

@@ -15,7 +15,7 @@ use super::tabulate::{self, Outcome, Row};
 use super::task::Task;
 use super::variant::Variant;
 use crate::dynamics::is_interrupted;
-use crate::experiment::{Case, Experiment};
+use crate::experiment::{Case, Experiment, ParameterValue};
 use crate::measure::{Link, Request};
 use crate::text::words;
 
@@ -85,17 +85,17 @@ fn simulate(
     let measure = tabulate::maximised_index(experiment, maximise.measure)
         .ok_or_else(|| RowFailure::NotMeasured(words::of_key(&maximise.measure)))?;
     // Histories of the points that are not the maximum are not wanted.
-    let asked = simulation.request;
-    let trace = asked.trace.filter(|_| measures_need_trace(&experiment.measures));
-    let shape = asked.shape.filter(|_| needs_shape(experiment));
+    let request = simulation.request;
+    let trace = request.trace.filter(|_| measures_need_trace(&experiment.measures));
+    let shape = request.shape.filter(|_| needs_shape(experiment));
     let point =
-        Simulation { request: Request { trace, energies: None, shape, each_cycle: None, ..asked }, ..simulation };
+        Simulation { request: Request { trace, energies: None, shape, each_cycle: None, ..request }, ..simulation };
     let Sought { mut evaluated, place, rise } =
         Along { evaluate, simulation: point, maximise, measure, done }.found()?;
     if job.variant == 0 {
         // The row itself is a result: the point once more, with all that proves it.
         let mut there = recipe.clone();
-        there.set(maximise.over, crate::experiment::ParameterValue::Number(place.at))?;
+        there.set(maximise.over, ParameterValue::Number(place.at))?;
         evaluated = evaluate_guarded(evaluate, &Simulation { recipe: &there, ..simulation })?;
         done();
     }

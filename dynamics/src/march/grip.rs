@@ -41,7 +41,7 @@ pub(crate) struct Grip {
 }
 
 impl Grip {
-    /// The grip of a face that moves so on particle j; with the particle in flight, what brings it back to the face.
+    /// The grip on particle j of a face with this acceleration; with the particle in flight, what brings it back to the face.
     pub(crate) fn of(system: &HybridSystem, face: Bend, j: usize, side: Side, on_stop: bool) -> Self {
         let spring = if on_stop { spring_on_stop(&system.particles[j], side) } else { 0.0 };
         Self {

@@ -3,15 +3,14 @@
 //! A run ends with a whole cycle, so that the next one starts at the phase of the drive at which the last one stopped; carried
 //! are places and rates of the structure and, relative to their faces, of the particles, with their contacts.
 
-use crate::arithmetic::matrix::dot;
 use crate::contact::Side;
 use crate::options::{Placed, StartState};
-use crate::system::{Contact, Face, HybridSystem, Particle};
+use crate::system::{Contact, HybridSystem, Particle};
 
 impl StartState {
     /// The same state in this system. Surfaces that are nearer now displace a particle by no more than they must: one that would
     /// lie beyond the ceiling or a limit stop lies at it. `None` if the system has other coordinates or particles, or lacks a
-    /// face or a stop that a particle touches.
+    /// face or a stop that a particle touches, or room between a floor and a ceiling.
     #[must_use]
     pub fn carried_to(&self, system: &HybridSystem) -> Option<Self> {
         let Self::Given { q, rate, particles } = self else { return Some(self.clone()) };
@@ -31,9 +30,8 @@ fn place(at: Placed, particle: &Particle, q: &[f64]) -> Option<Placed> {
         return None;
     }
     if contact == Contact::Flight {
-        let room = |ceiling: &Face| particle.gap + (dot(&ceiling.row, q) - dot(&particle.floor.row, q));
-        let gap = particle.ceiling.as_ref().map_or(gap, |ceiling| gap.min(room(ceiling)));
-        return Some(Placed { contact, gap, rate });
+        let room = particle.lift(q).map_or(f64::INFINITY, |lift| particle.gap + lift);
+        return (room >= 0.0).then_some(Placed { contact, gap: gap.min(room), rate });
     }
     let on_stop = matches!(contact, Contact::FloorStop | Contact::CeilingStop);
     let Some(stop) = side.face(particle).law.stop() else { return (!on_stop).then_some(at) };

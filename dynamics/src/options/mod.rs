@@ -148,7 +148,7 @@ pub enum StartState {
 pub struct Placed {
     /// Its contact.
     pub contact: Contact,
-    /// Gap coordinate, m: its place relative to the face that it has contact with, to its floor in flight.
+    /// Gap coordinate, m: its place relative to the face that its contact names first, to its floor in flight.
     pub gap: f64,
     /// The rate of that, m/s.
     pub rate: f64,

@@ -98,7 +98,7 @@ impl<'a> Stretch<'a> {
     }
 }
 
-/// Special points with their places along a step; `None` where the motion has lost its asymmetry.
+/// Special points with their places along a step; `None` as in [`between`].
 type Found = Option<Vec<(f64, Special, At)>>;
 
 /// The special points between a point and the next, `step` along, in their order; `None` where the motion has lost its asymmetry, and

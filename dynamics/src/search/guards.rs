@@ -354,11 +354,9 @@ fn across(state: Contacts<'_>, j: usize, rows: AcrossRows, guards: &mut Vec<Guar
 
 /// The state of a particle that refers to the other face, referred to the one on this side.
 pub(crate) fn seen_from(side: Side, particle: &Particle, here: Relative, q: &[f64], q_rate: &[f64]) -> Relative {
-    let Some(ceiling) = particle.ceiling.as_ref() else { return here };
-    let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
-    // Upwards the ceiling lies by gap + shift above the floor.
+    let [Some(lift), Some(rate)] = [q, q_rate].map(|x| particle.lift(x)) else { return here };
     let away = side.away();
-    Relative { gap: here.gap + away * (particle.gap + shift(q)), rate: here.rate + away * shift(q_rate) }
+    Relative { gap: here.gap + away * (particle.gap + lift), rate: here.rate + away * rate }
 }
 
 fn held(state: Contacts<'_>, j: usize, guards: &mut Vec<Guard>) {

@@ -82,7 +82,7 @@ const INVERSE_BINOMIAL: Coefficients = {
     table
 };
 
-/// Share of a root by which the last of Newton's steps to it is to move, for three digits or so: the next would be the square of this.
+/// Newton's method stops at a step below this share of the root: the next would be its square, so that three digits or so are known.
 pub(crate) const THREE_DIGITS: f64 = 0.03;
 
 /// The root below `high` by Newton steps from `x`, until one moves by no more than `share` of it. Gives with it the slope before the last

@@ -7,7 +7,7 @@
 pub(crate) mod spline;
 
 use crate::arithmetic::elementary::sin_cos;
-use crate::arithmetic::matrix::Matrix;
+use crate::arithmetic::matrix::{Matrix, dot};
 
 /// A structure with its particles and its drive, in any consistent units in which speeds are well above 10⁻⁹, where bouncing ends; those
 /// named here are SI. Coordinates may be generalised: rows φ give displacements of points, φ·q.
@@ -300,6 +300,13 @@ impl Particle {
     /// Floor and ceiling do not move as one.
     pub(crate) fn has_walls(&self) -> bool {
         self.ceiling.as_ref().is_some_and(|ceiling| ceiling.row != self.floor.row)
+    }
+
+    /// How far the ceiling is above where it is over the floor of a structure at rest, for q, or how fast it moves away, for q′; `None`
+    /// without a ceiling.
+    pub(crate) fn lift(&self, x: &[f64]) -> Option<f64> {
+        let ceiling = self.ceiling.as_ref()?;
+        Some(dot(&ceiling.row, x) - dot(&self.floor.row, x))
     }
 
     /// Between faces that move as one, without a gap: what leaves one of them is at the other.
