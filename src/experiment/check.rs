@@ -200,8 +200,7 @@ impl Checks<'_> {
     pub fn coverage(
         &self,
         scene: &ReadScene,
-        cases: &[Case],
-        places: &BTreeMap<Parameter, Span>,
+        ReadSweep { cases, places, .. }: &ReadSweep,
         mean_over: &ReadSweep,
         maximise: Option<&Maximise>,
     ) {
@@ -237,14 +236,13 @@ impl Checks<'_> {
     pub fn marked(
         &self,
         scene: &ReadScene,
-        cases: &[Case],
-        places: &BTreeMap<Parameter, Span>,
+        sweep: &ReadSweep,
         mean_over: &ReadSweep,
         looked_for: Option<(&Maximise, Span)>,
     ) {
-        let of_sweep = places.iter().map(|(parameter, at)| (*parameter, *at, cases));
-        let of_mean = mean_over.places.iter().map(|(parameter, at)| (*parameter, *at, mean_over.cases.as_slice()));
-        for (parameter, at, cases) in of_sweep.chain(of_mean) {
+        let swept =
+            [sweep, mean_over].into_iter().flat_map(|sweep| sweep.places.iter().map(move |place| (sweep, place)));
+        for (ReadSweep { cases, .. }, (&parameter, &at)) in swept {
             // A case that leaves it out has the value that the scene states; of several dampers it is not known which the others mean.
             let several = parameter.is_of_dampers() && scene.recipe.dampers.len() > 1;
             if several || cases.iter().all(|case| sets_or_leaves_out(case, parameter)) {
@@ -420,8 +418,7 @@ impl Checks<'_> {
     /// The number of runs is bounded.
     pub fn amount(
         &self,
-        cases: &[Case],
-        refined: &[(Refinement, Span)],
+        ReadSweep { cases, refined, .. }: &ReadSweep,
         maximise: Option<&Maximise>,
         averaged: usize,
         at: Span,

@@ -4,10 +4,11 @@ use serde_json::json;
 
 use super::recipe::{GapWord, Parameter};
 
-use super::continuation::BranchColumn;
+use super::continuation::{BranchColumn, Continuation};
 use super::definition::{Case, Experiment, Maximise};
 use super::diagnostic::{Findings, Span};
 use super::figure_spec::Joined;
+use super::optimise::Optimise;
 use super::reader::unknown;
 use super::schema::parts::any_of;
 use super::starts::{BasinColumn, START_LISTS, Starts};
@@ -67,28 +68,54 @@ impl Lists {
     }
 }
 
-impl Experiment {
-    /// The columns that its table will have.
-    pub(crate) fn columns(&self) -> Columns {
-        if let Some(orbit) = &self.orbit {
-            return Columns::of_branches(orbit.along, &self.measures);
+/// The parts of an experiment that decide which columns its table has.
+pub(super) struct TableParts<'t> {
+    pub orbit: Option<&'t Continuation>,
+    pub optimise: Option<&'t Optimise>,
+    pub starts: Option<&'t Starts>,
+    pub swept: &'t [Parameter],
+    pub cases: &'t [Case],
+    pub measures: &'t [Measure],
+    pub maximise: Option<&'t Maximise>,
+    pub lists: Lists,
+}
+
+impl TableParts<'_> {
+    pub fn columns(&self) -> Columns {
+        if let Some(orbit) = self.orbit {
+            return Columns::of_branches(orbit.along, self.measures);
         }
-        if let Some(optimise) = &self.optimise {
-            return Columns::of_candidates(optimise.bounds.len(), optimise.gaps, &self.measures);
+        if let Some(optimise) = self.optimise {
+            return Columns::of_candidates(optimise.bounds.len(), optimise.gaps, self.measures);
         }
-        let (trace, energies) = (self.trace.as_ref(), self.energies.as_ref());
-        let lists = Lists::kept(trace, energies, self.shape.as_ref(), self.each_cycle.as_ref());
-        let labels = labels(&self.cases);
-        let columns = Columns::of(&self.swept, &labels, &self.measures, self.maximise.as_ref(), &lists);
-        match &self.starts {
+        let columns = Columns::of_cases(self);
+        match self.starts {
             Some(starts) => columns.with_basins(starts),
             None => columns,
         }
     }
 }
 
+impl Experiment {
+    /// The columns that its table will have.
+    pub(crate) fn columns(&self) -> Columns {
+        let (trace, energies) = (self.trace.as_ref(), self.energies.as_ref());
+        let parts = TableParts {
+            orbit: self.orbit.as_ref(),
+            optimise: self.optimise.as_ref(),
+            starts: self.starts.as_ref(),
+            swept: &self.swept,
+            cases: &self.cases,
+            measures: &self.measures,
+            maximise: self.maximise.as_ref(),
+            lists: Lists::kept(trace, energies, self.shape.as_ref(), self.each_cycle.as_ref()),
+        };
+        parts.columns()
+    }
+}
+
 /// Columns that tell parts of a sweep apart.
-pub(super) fn labels(cases: &[Case]) -> Vec<&'static str> {
+fn labels(cases: &[Case]) -> Vec<&'static str> {
     let named = cases.iter().any(|case| !case.sweep.is_empty()).then_some("sweep");
     let directed = cases.iter().any(|case| case.direction.is_some()).then_some("direction");
     named.into_iter().chain(directed).collect()
@@ -135,22 +162,17 @@ impl Columns {
         unknown(findings, span, table, "column", name, &self.names())
     }
 
-    /// The columns of an experiment made of these parts.
-    pub fn of(
-        swept: &[Parameter],
-        split: &[&str],
-        measures: &[Measure],
-        maximise: Option<&Maximise>,
-        lists: &Lists,
-    ) -> Self {
+    /// Those of a table with a row a case.
+    fn of_cases(parts: &TableParts<'_>) -> Self {
+        let TableParts { swept, cases, measures, maximise, lists, .. } = parts;
         let mut list: Vec<(String, Role)> = Vec::new();
-        for parameter in swept {
+        for parameter in *swept {
             let role = if parameter.words().is_empty() { Role::Number } else { Role::Label };
             list.push((word_of(*parameter), role));
         }
-        let labels = split.iter().chain(&["solver", "variant"]);
-        list.extend(labels.map(|name| (String::from(*name), Role::Label)));
-        for measure in measures {
+        let labels = labels(cases).into_iter().chain(["solver", "variant"]);
+        list.extend(labels.map(|name| (name.into(), Role::Label)));
+        for measure in *measures {
             let name = word_of(*measure);
             if measure.is_name() {
                 list.push((name, Role::Label));
@@ -167,7 +189,7 @@ impl Columns {
     }
 
     /// The same with what is said of the motions that random starts end in.
-    pub fn with_basins(mut self, starts: &Starts) -> Self {
+    fn with_basins(mut self, starts: &Starts) -> Self {
         let role = |column: BasinColumn| if column.is_word() { Role::Label } else { Role::Number };
         self.list.extend(BasinColumn::ALL.map(|column| (column.name().into(), role(column))));
         self.list.extend(starts.lists().into_iter().map(|(name, _)| (name, Role::Scatter)));
@@ -175,7 +197,7 @@ impl Columns {
     }
 
     /// The columns of an optimisation of so many gaps.
-    pub fn of_candidates(gaps: usize, word: GapWord, measures: &[Measure]) -> Self {
+    fn of_candidates(gaps: usize, word: GapWord, measures: &[Measure]) -> Self {
         let mut list: Vec<(String, Role)> = vec![("candidate".into(), Role::Label)];
         list.extend(["seed", "varied"].map(|name| (name.into(), Role::Number)));
         list.extend((1..=gaps).map(|gap| (format!("{}_{gap}", word_of(word)), Role::Number)));
@@ -192,7 +214,7 @@ impl Columns {
     }
 
     /// The columns of branches of periodic motions along a parameter.
-    pub fn of_branches(along: Parameter, measures: &[Measure]) -> Self {
+    fn of_branches(along: Parameter, measures: &[Measure]) -> Self {
         let mut list: Vec<(String, Role)> = vec![(word_of(along), Role::Number)];
         list.extend(
             BranchColumn::ALL

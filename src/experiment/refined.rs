@@ -9,12 +9,12 @@ use super::at::At;
 use super::definition::{Case, Experiment, differing_in};
 use super::diagnostic::Findings;
 use super::figure_spec::AxisScale;
+use super::measures::read_measure;
 use super::quantity::parse_percent;
 use super::range::{between, end, in_order, rounded};
 use super::reader::{number, scalar};
 use super::recipe::{Parameter, ParameterValue};
 use super::schema::parts;
-use super::validate::read_measure;
 use super::yaml::{Node, Value};
 use crate::measure::Measure;
 
