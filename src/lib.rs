@@ -68,7 +68,7 @@
 #![cfg_attr(
     feature = "pipeline",
     doc = "
-5. [`experiment`] reads YAML into validated experiments: units resolved, every mistake reported with line and column.
+5. [`experiment`] reads YAML into validated experiments: units resolved, every mistake reported with line and column ([`yaml`]).
 6. [`study`] plans, runs in parallel and stores one [`table::Table`] per experiment.
 7. [`mod@reference`] holds each published number and claim and gives its verdict; [`figure`] draws; [`report`] writes.
 8. [`accuracy`] measures error against time; [`calibrate`] searches sets of assumptions.
@@ -105,3 +105,5 @@ pub mod report;
 pub mod study;
 #[cfg(feature = "pipeline")]
 pub mod table;
+#[cfg(feature = "pipeline")]
+pub mod yaml;

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::measured::NoAccuracy;
+use super::no_accuracy::NoAccuracy;
 use super::representative::{is_chaotic, representative, trial, worst};
 use super::timing::Times;
 use crate::dynamics::{

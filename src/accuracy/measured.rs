@@ -8,14 +8,15 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::no_accuracy::NoAccuracy;
 use super::representative::{floor, representative, trial, worst};
 use super::timing::Times;
-use crate::accuracy::precise::{PreciseError, precise};
+use crate::accuracy::precise::precise;
 use crate::dynamics::{
     Allowance, EngineError, Event, HybridSystem, Method, Options, Response, event_driven, fixed_step,
 };
-use crate::experiment::{Assumptions, Experiment, RecipeError};
-use crate::measure::{EvaluateError, Measure, Trial};
+use crate::experiment::{Assumptions, Experiment};
+use crate::measure::{Measure, Trial};
 use crate::text::number::quantity;
 
 /// Search windows that the event-driven solver is tried with.
@@ -126,29 +127,6 @@ impl Accuracy {
     pub(super) fn regular(&self) -> Vec<&CaseAccuracy> {
         self.cases.iter().filter(|case| case.floor.is_none()).collect()
     }
-}
-
-/// Why there is no diagram.
-#[derive(Debug, thiserror::Error)]
-pub enum NoAccuracy {
-    /// Nothing is simulated.
-    #[error("no case has a damper whose motion takes time to simulate")]
-    Nothing,
-    /// Its runs are trials of a search.
-    #[error("it is an optimisation, whose runs are trials of a search; name an experiment that runs one of its arrays")]
-    Optimisation,
-    /// A case has no scene.
-    #[error(transparent)]
-    Recipe(#[from] RecipeError),
-    /// A case does not run.
-    #[error(transparent)]
-    Case(#[from] EvaluateError),
-    /// A contender fails.
-    #[error(transparent)]
-    Engine(#[from] EngineError),
-    /// The reference fails.
-    #[error(transparent)]
-    Reference(#[from] PreciseError),
 }
 
 /// Runs the contenders on representative cases: errors first, then times, alone on the machine. No run takes much longer than

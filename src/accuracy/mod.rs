@@ -6,6 +6,7 @@
 mod ablation;
 mod ablation_page;
 mod measured;
+mod no_accuracy;
 mod page;
 pub mod precise;
 mod publish;
@@ -16,9 +17,8 @@ mod verdict_price;
 
 pub use ablation::{Ablation, Idle, Outcome, Switched, ablation, idle_cases, unreached_cases};
 pub use ablation_page::{ablation_page, out_of_reach_in_words};
-pub use measured::{
-    Accuracy, CaseAccuracy, Contender, Errors, EventTimes, NoAccuracy, Origin, Point, Skipped, accuracy, errors,
-};
+pub use measured::{Accuracy, CaseAccuracy, Contender, Errors, EventTimes, Origin, Point, Skipped, accuracy, errors};
+pub use no_accuracy::NoAccuracy;
 pub use page::{AccuracyView, accuracy_page, accuracy_summary};
 pub use publish::{
     Measured, accuracy_view, check_publishable, keep_measured, publish_accuracy, publish_accuracy_summary,

@@ -1,6 +1,6 @@
 //! Cases that stand for an experiment, and whether their motion is chaotic.
 
-use super::measured::NoAccuracy;
+use super::no_accuracy::NoAccuracy;
 use crate::dynamics::{Method, Options, Response, event_driven};
 use crate::experiment::{Assumptions, Case, Experiment, ParameterValue, Recipe};
 use crate::measure::{Measure, Needs, SolverChoice, Trial};

@@ -1,8 +1,9 @@
 //! A finding with the numbers of its result.
 
-use super::page::{reproduced, share};
-use super::{Calibrated, Compared};
+use super::{Calibrated, Compared, Read};
 use crate::experiment::{FindingNumber, FindingText, InputSet};
+use crate::reference::Verdict;
+use crate::text::number;
 
 /// The finding as the page has it.
 pub(super) fn filled(finding: &FindingText, result: &Calibrated) -> String {
@@ -22,4 +23,14 @@ fn count(entries: &[Compared], set: InputSet) -> String {
         InputSet::Best => reproduced(entries, |one| &one.best),
         InputSet::InForce => reproduced(entries, |one| &one.in_force),
     }
+}
+
+pub(super) fn share(residual: Option<f64>) -> String {
+    residual.map_or_else(|| "none".into(), |residual| format!("{} %", number::significant(100.0 * residual, 2)))
+}
+
+/// How many of them: `8 of 23`.
+pub(super) fn reproduced(list: &[Compared], of: fn(&Compared) -> &Read) -> String {
+    let count = list.iter().filter(|one| of(one).verdict == Verdict::Reproduced).count();
+    format!("{count} of {}", list.len())
 }

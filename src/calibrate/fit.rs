@@ -13,9 +13,6 @@ use crate::experiment::{Assumptions, Calibration, CalibrationSearch, Experiment}
 use crate::reference::{Entry, Found, ReferenceFile, Verdict, judge};
 use crate::study::{Evaluate, Event, EventHandler, RunError};
 
-/// What exceeds the least residual by less than this share of it is as good.
-pub(super) const AS_GOOD: f64 = 0.1;
-
 /// Why there is no calibration.
 #[derive(Debug, thiserror::Error)]
 pub enum CalibrationError {

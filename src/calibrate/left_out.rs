@@ -5,13 +5,15 @@
 //! least one, so that an input on which the entry alone hangs leaves it open. A number that is printed once and read in several places
 //! is left out of all of them.
 
-use super::fit::AS_GOOD;
 use super::journal::EntryError;
 use super::residuals::root_mean_square;
 use super::search::Places;
 use super::trials::Asked;
 use crate::experiment::Residual;
 use crate::reference::Check;
+
+/// What exceeds the least residual by less than this share of it is as good.
+pub(super) const AS_GOOD: f64 = 0.1;
 
 /// What the fit of the other entries says of one.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use super::finding::filled;
-use super::fit::AS_GOOD;
+use super::finding::{filled, reproduced, share};
+use super::left_out::AS_GOOD;
 use super::{Calibrated, Compared, LeftOut, Profile, Read};
 use crate::experiment::{Calibration, CalibrationInput, CalibrationSearch, Residual};
-use crate::reference::{Found, Verdict};
+use crate::reference::Found;
 use crate::text::number;
 
 use crate::report::markdown::{Align, MarkdownTable};
@@ -196,10 +196,6 @@ fn residuals(calibration: &Calibration, result: &Calibrated) -> String {
     )
 }
 
-pub(super) fn share(residual: Option<f64>) -> String {
-    residual.map_or_else(|| "none".into(), |residual| format!("{} %", number::significant(100.0 * residual, 2)))
-}
-
 fn points(input: &CalibrationInput, residuals: &[Option<f64>], best: usize) -> String {
     let description = residuals.iter().enumerate().map(|(place, residual)| {
         let description =
@@ -224,12 +220,6 @@ fn determined(profile: &Profile, best: usize, search: CalibrationSearch) -> &'st
         (rivals, all) if rivals + 1 == all => "no",
         _ => "in part",
     }
-}
-
-/// How many of them: `8 of 23`.
-pub(super) fn reproduced(list: &[Compared], of: fn(&Compared) -> &Read) -> String {
-    let count = list.iter().filter(|one| of(one).verdict == Verdict::Reproduced).count();
-    format!("{count} of {}", list.len())
 }
 
 fn entries(title: &str, list: &[Compared]) -> String {

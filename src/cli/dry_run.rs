@@ -6,7 +6,6 @@ use super::exit::Exit;
 use super::output::{print, print_error, print_unread};
 use super::select::{Found, choose};
 use super::thresholds;
-use super::update::todo;
 use crate::study::{Extent, KnownRows, Layout, forecast, simulations};
 use crate::text::number::{self, compact};
 use crate::text::words::{capitalised, counted};
@@ -18,7 +17,7 @@ pub(super) fn dry_run(layout: &Layout, found: Found, args: &RunArgs, common: &Ar
     print_unread(chosen.unread.iter().copied());
     let threads = common.workers();
     let (mut text, mut total) = (String::new(), Total::default());
-    for item in todo(&chosen, args) {
+    for item in chosen.todo(args.force) {
         let known = if args.force { KnownRows::nothing() } else { KnownRows::of(layout, item) };
         let extent = item.extent(layout, &known);
         text += &format!("{}: {}", item.source.experiment.id, rows(&extent));

@@ -5,10 +5,11 @@ use std::path::PathBuf;
 
 use crate::atomic::{FileError, from_here};
 use crate::calibrate::CalibrationError;
-use crate::experiment::{IdError, Problems};
+use crate::experiment::IdError;
 use crate::reference::AcceptError;
 use crate::report::CrateError;
 use crate::study::{LockError, RunError};
+use crate::yaml::Problems;
 
 #[derive(Debug, thiserror::Error)]
 pub(super) enum CliError {

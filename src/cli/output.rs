@@ -3,10 +3,17 @@
 use std::io::{self, IsTerminal, Write};
 use std::sync::OnceLock;
 
-use super::args::Colour;
 use super::error::CliError;
-use crate::experiment::Problems;
 use crate::study::Refused;
+use crate::yaml::Problems;
+
+/// When to use colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Colour {
+    Auto,
+    Always,
+    Never,
+}
 
 /// How this process prints; set once, from its arguments.
 #[derive(Debug, Clone, Copy)]

@@ -7,9 +7,11 @@ use super::args::{CheckArgs, Choice, Command, ExportArgs, GatherArgs, RunArgs, S
 use super::error::CliError;
 use super::exit::Exit;
 use crate::atomic::place_of;
-use crate::experiment::did_you_mean;
 use crate::report::Judgement;
-use crate::study::{ASSUMPTIONS, Item, Layout, Refused, STUDY, Snapshot, Study, Summary, Texts, folder_of, stem};
+use crate::study::{
+    ASSUMPTIONS, Item, Layout, Refused, STUDY, Snapshot, State, Study, Summary, Texts, folder_of, stem,
+};
+use crate::yaml::did_you_mean;
 
 /// The study that is meant.
 pub(super) fn layout(root: Option<&Path>) -> Result<Layout, CliError> {
@@ -185,6 +187,11 @@ pub(super) fn choose<'a>(study: &'a Study, choice: &Choice) -> Result<Chosen<'a>
 }
 
 impl<'a> Chosen<'a> {
+    /// What there is to do; all of it where that is forced.
+    pub fn todo(&self, force: bool) -> Vec<&'a Item> {
+        self.items.iter().copied().filter(|item| force || !matches!(item.state, State::Current(_))).collect()
+    }
+
     /// The ids of the experiments.
     fn ids(&self) -> impl Iterator<Item = &'a str> {
         let planned = self.items.iter().map(|item| item.source.experiment.id.0.as_str());

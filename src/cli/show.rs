@@ -14,7 +14,7 @@ use super::error::CliError;
 use super::exit::Exit;
 use super::output::{columns, print, print_error, print_unread};
 use super::select::{choose, matches, no_match};
-use super::thresholds;
+use super::thresholds::{self, PATIENCE};
 use crate::accuracy::{idle_cases, out_of_reach_in_words, unreached_cases};
 use crate::dynamics::{Allowance, Limit, Until, in_words};
 use crate::experiment::{
@@ -31,8 +31,6 @@ use crate::text::words::{counted, of_key};
 const BOUND: Duration = Duration::from_millis(1500);
 /// Between two looks at it.
 const LOOK: Duration = Duration::from_millis(5);
-/// How long the proof that particles stay on their floors may take; cases beyond it count as not proved.
-pub(super) const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Parts of the text, in its order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,11 +1,15 @@
 //! Thresholds in words: what is known of a sweep's rows before any of them is simulated.
 
-use super::show::PATIENCE;
+use std::time::Duration;
+
 use crate::dynamics::{Allowance, Limit};
 use crate::experiment::{Experiment, Threshold};
 use crate::study::{Study, ThresholdAlong, thresholds};
 use crate::text::number::compact;
 use crate::text::words::{counted, of_key};
+
+/// How long the proof that particles stay on their floors may take; cases beyond it count as not proved.
+pub(super) const PATIENCE: Duration = Duration::from_millis(500);
 
 /// A line for each threshold, indented.
 pub(super) fn in_words(study: &Study, experiment: &Experiment) -> String {

@@ -8,11 +8,11 @@ use super::dry_run::dry_run;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_error, print_progress, print_unread, print_warnings};
-use super::select::{Chosen, Found, choose, matched};
+use super::select::{Found, choose, matched};
 use super::simulate::{How, Ran, held, print_failures, simulate};
 use crate::atomic::{check_writable, from_here};
 use crate::report::{Elsewhere, INDEX, Judgement, Published, doubts, judge_all, publish, report_of, summary_of};
-use crate::study::{Item, Layout, Lock, RunTimes, STUDY, Snapshot, State, Study, before_run, remove_journals, save};
+use crate::study::{Layout, Lock, RunTimes, STUDY, Snapshot, Study, before_run, remove_journals, save};
 use crate::text::words::counted;
 
 /// Brings the chosen experiments up to date.
@@ -41,7 +41,7 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
     print_warnings(study.warnings().as_ref());
-    let todo = todo(&chosen, args);
+    let todo = chosen.todo(args.force);
     if !args.choice.is_all() || todo.len() <= WARNED {
         for item in &todo {
             let experiment = &item.source.experiment;
@@ -205,9 +205,4 @@ fn take_snapshot(study: &Study, published: Published) -> Result<(), CliError> {
     let Published { experiments, of_the_study, .. } = published;
     let kept = study.known.keys().map(String::as_str).collect();
     Ok(Snapshot::take(&study.layout, &study.texts, &study.sheet, &kept, experiments, &of_the_study)?)
-}
-
-/// What there is to do, among the chosen ones.
-pub(super) fn todo<'a>(chosen: &Chosen<'a>, args: &RunArgs) -> Vec<&'a Item> {
-    chosen.items.iter().copied().filter(|item| args.force || !matches!(item.state, State::Current(_))).collect()
 }

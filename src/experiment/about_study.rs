@@ -15,14 +15,11 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::at::At;
-use super::diagnostic::{Problems, Span};
 use super::load::parsed;
-use super::reader::{no_such, word};
-use super::schema::described;
-use super::schema::parts::words_of;
-use super::word::words;
-use super::yaml::Value;
+use crate::yaml::reader::{no_such, word};
+use crate::yaml::schema::words_of;
+use crate::yaml::word::words;
+use crate::yaml::{At, Problems, Span, Value, described};
 
 /// What a study says of itself; every part may be absent.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]

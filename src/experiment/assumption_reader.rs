@@ -5,20 +5,16 @@ use std::sync::Arc;
 use serde_json::json;
 
 use super::assumption_sheet::{ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Quantity, Takes};
-use super::at::At;
-use super::diagnostic::{Findings, Place, Problems, place};
-use super::keys::Key;
-use super::quantity::Dimension;
-use super::reader::{above_zero, count, list, no_such, ratio, scalar, unknown};
+use super::assumptions_schema;
 use super::recipe::{AssumptionName, AssumptionValue, Slot};
 use super::scene::names_assumption;
-use super::schema::{assumptions, parts};
 use super::stated::{STATED, read_chapters};
-use super::word::{from_word, words};
-use super::yaml::{Entry, Node, Value, read_tree};
 use crate::dynamics::Spline;
 use crate::scene::{Curve, KINDS, Kind};
 use crate::text::number::significant;
+use crate::yaml::reader::{above_zero, count, list, no_such, ratio, scalar, unknown};
+use crate::yaml::word::{from_word, words};
+use crate::yaml::{At, Dimension, Entry, Findings, Key, Node, Place, Problems, Value, place, read_tree, schema};
 
 /// Reads the assumptions file from its text; `file` only names it in messages.
 ///
@@ -95,7 +91,7 @@ fn read_each_default(at: At<'_>, form: &str, sheet: &AssumptionSheet) -> Option<
                 let name = sheet.named(node, findings)?;
                 fits(sheet, &name, node, slot.takes(), &format!("`{key}`"), findings).then_some(name)
             };
-            at.form(read, |_| parts::text("An assumption"))
+            at.form(read, |_| schema::text("An assumption"))
         };
         let on_each = |at: At<'_>| {
             let kinds: Vec<Key<'_>> = KINDS.iter().map(|kind| (kind.name, "An assumption")).collect();
@@ -161,7 +157,7 @@ pub(super) fn read_entry(at: At<'_>, place: Place) -> Option<AssumptionEntry> {
     let keys = at.keys("an assumption")?;
     let quantity = keys.optional("quantity", "What its numbers are", read_quantity);
     let readings = keys.optional("readings", "Its readings", |at| {
-        at.list(|at| at.form(|node, findings| scalar(node, findings).map(str::to_owned), |it| parts::text(it.about())))
+        at.list(|at| at.form(|node, findings| scalar(node, findings).map(str::to_owned), |it| schema::text(it.about())))
     });
     let kind = match (quantity, readings) {
         (Some(None), Some(None)) => {
@@ -172,14 +168,14 @@ pub(super) fn read_entry(at: At<'_>, place: Place) -> Option<AssumptionEntry> {
         _ => None,
     };
     let value = |node: &Node, findings: &Findings| read_value(node, kind.as_ref()?, findings);
-    let in_force = keys.required("value", "A value of its kind", |at| at.form(value, |_| assumptions::value()));
+    let in_force = keys.required("value", "A value of its kind", |at| at.form(value, |_| assumptions_schema::value()));
     let reason = keys.required("reason", "Why this value", |at| at.text());
     let other = |node: &Node, findings: &Findings| {
         let other = value(node, findings)?;
         in_force.as_ref().is_none_or(|one| alike(one, &other, node, findings)).then_some(other)
     };
     let range = keys.optional("range", "Other values that could be defended", |at| {
-        at.list(|at| at.form(other, |_| assumptions::value()))
+        at.list(|at| at.form(other, |_| assumptions_schema::value()))
     });
     let fitted_to = "Entries that the value was chosen by, experiment/entry";
     let fitted_to = keys.optional("fitted_to", fitted_to, |at| at.list(|at| at.text()));
@@ -216,7 +212,7 @@ fn read_quantity(at: At<'_>) -> Option<Quantity> {
             .or_else(|| from_word::<Dimension>(word).map(Quantity::Of))
             .or_else(|| no_such(findings, node.span, "kind of quantity", word, &quantities()))
     };
-    at.form(read, |it| parts::one_of_words(it.about(), &quantities()))
+    at.form(read, |it| schema::one_of_words(it.about(), &quantities()))
 }
 
 pub(super) fn read_value(node: &Node, kind: &AssumptionKind, findings: &Findings) -> Option<AssumptionValue> {

@@ -17,13 +17,11 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::assumption_reader::{alike, read_value};
-use super::diagnostic::{Findings, Place, Problems};
-use super::quantity::Dimension;
-use super::reader::{no_such, scalar};
 use super::recipe::{AssumptionName, AssumptionValue, Assumptions, Slot};
 use super::stated::{StatedByChapter, Statement};
-use super::word::closest;
-use super::yaml::Node;
+use crate::yaml::reader::{no_such, scalar};
+use crate::yaml::word::closest;
+use crate::yaml::{Dimension, Findings, Node, Place, Problems};
 
 /// The name of the file within a study.
 pub const ASSUMPTIONS: &str = "experiments/assumptions.yaml";

@@ -24,18 +24,15 @@ use serde::Deserialize;
 use serde_json::{Value as Schema, json};
 
 use super::assumption_sheet::{AssumptionSheet, Quantity};
-use super::at::At;
-use super::diagnostic::{Findings, Problems, Span};
+use super::assumptions_schema;
 use super::finding::FindingText;
-use super::keys::Keys;
 use super::load::parsed;
-use super::reader::{all, no_such};
 use super::recipe::{AssumptionName, AssumptionValue};
-use super::schema::parts::{any_of, list};
-use super::schema::{assumptions, described};
 use super::solver::read_solver;
-use super::yaml::{Node, Value};
 use crate::measure::SolverChoice;
+use crate::yaml::reader::{all, no_such};
+use crate::yaml::schema::{any_of, list};
+use crate::yaml::{At, Findings, Keys, Node, Problems, Span, Value, described};
 
 /// Most combinations of values of a full grid: each is a run of every experiment concerned.
 const MOST_COMBINATIONS: usize = 10_000;
@@ -317,7 +314,7 @@ fn tried(key: &str, span: Span, at: At<'_>, sheet: &AssumptionSheet) -> Option<T
         let values = values(at, moves.as_deref(), sheet);
         moves.zip(values).map(|(moves, values)| of(moves, values))
     };
-    let named = |at: At<'_>| at.form(|node, findings| sheet.named(node, findings), |_| assumptions::any(sheet));
+    let named = |at: At<'_>| at.form(|node, findings| sheet.named(node, findings), |_| assumptions_schema::any(sheet));
     let keyed = |at: At<'_>| {
         let keys = at.keys("an input")?;
         let forms = [("moves", "Assumptions that are moved together"), ("scales", "The assumption that is scaled")];
@@ -356,7 +353,7 @@ fn values(at: At<'_>, moves: Option<&[AssumptionName]>, sheet: &AssumptionSheet)
     at.list(|at| {
         at.form(
             |node, findings| value(node, moves?, sheet, findings),
-            |_| any_of("A value", vec![assumptions::value(), list("One for each", assumptions::value())]),
+            |_| any_of("A value", vec![assumptions_schema::value(), list("One for each", assumptions_schema::value())]),
         )
     })
 }

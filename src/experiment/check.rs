@@ -6,11 +6,11 @@ use super::recipe::{AssumptionName, Assumptions, ExcitationKind, Parameter, Para
 use crate::dynamics::{EngineError, Until};
 use crate::measure::{CycleSpec, EnergySpec, Measure, Settings, ShapeSpec, SolverChoice, Tolerance, TraceSpec, Under};
 use crate::scene::Scene;
+use crate::yaml::{Findings, Span};
 
 use super::assumption_sheet::AssumptionSheet;
 use super::continued::ContinuedSweep;
 use super::definition::{Case, Experiment, Maximise, SearchPoint};
-use super::diagnostic::{Findings, Span};
 use super::figure_spec::{Drawing, FigureSpec, Panel};
 use super::optimise::Optimise;
 use super::refined::{Refinement, curves};
@@ -18,7 +18,7 @@ use super::refusal::{Meant, Places, Refusal};
 use super::scene::ReadScene;
 use super::starts_reader::ReadStarts;
 use super::sweep::ReadSweep;
-use super::word::word_of;
+use crate::yaml::word::word_of;
 
 /// Most runs of a whole experiment, ensembles not counted.
 const MOST_RUNS: usize = 1_000_000;

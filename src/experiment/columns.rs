@@ -3,20 +3,20 @@
 use serde_json::json;
 
 use super::recipe::{GapWord, Parameter};
+use crate::yaml::{Findings, Span};
 
 use super::continuation::{BranchColumn, Continuation};
 use super::definition::{Case, Experiment, Maximise};
-use super::diagnostic::{Findings, Span};
 use super::figure_spec::Joined;
 use super::optimise::Optimise;
-use super::reader::unknown;
-use super::schema::parts::any_of;
 use super::starts::{BasinColumn, START_LISTS, Starts};
-use super::word::{from_word, word_of, words};
 use crate::measure::{
     CycleSpec, CycleValue, EnergySpec, Measure, PROOF, ShapeSpec, TraceSpec, energy_columns, of_another_damper,
     shape_columns, trace_columns, unit_of_list,
 };
+use crate::yaml::reader::unknown;
+use crate::yaml::schema::any_of;
+use crate::yaml::word::{from_word, word_of, words};
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

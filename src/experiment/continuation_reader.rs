@@ -2,17 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use super::at::At;
 use super::continuation::Continuation;
-use super::diagnostic::{Findings, Span};
 use super::figure_spec::AxisScale;
 use super::range::{by_kind, end, in_order, size};
-use super::reader::no_such;
 use super::recipe::Parameter;
-use super::schema::parts;
 use super::sweep::{ReadSweep, about, parameters};
-use super::word::{from_word, word_of, words};
-use super::yaml::{Node, Value};
+use crate::yaml::reader::no_such;
+use crate::yaml::word::{from_word, word_of, words};
+use crate::yaml::{At, Findings, Node, Span, Value, schema};
 
 /// Most points of a branch.
 const MOST_POINTS: u32 = 100_000;
@@ -113,7 +110,7 @@ fn range(at: At<'_>) -> Option<Range> {
     };
     at.form(read, |it| {
         let smooth = parameters().filter(|(_, parameter)| parameter.varies_smoothly());
-        parts::one_of_keys(
+        schema::one_of_keys(
             it.about(),
             smooth.map(|(name, parameter)| (name, it.part(&about(name), |at| ends(at, parameter)))),
         )

@@ -5,12 +5,10 @@
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::at::At;
 use super::definition::{Case, differing_in};
-use super::diagnostic::Span;
-use super::keys::Keys;
 use super::recipe::Parameter;
-use super::word::word_of;
+use crate::yaml::word::word_of;
+use crate::yaml::{At, Keys, Span};
 
 /// The way that rows follow each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

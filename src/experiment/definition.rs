@@ -20,7 +20,7 @@ use super::range::rounded;
 use super::refined::Refinement;
 use super::starts::Starts;
 use super::stated::Unsourced;
-use super::word::word_of;
+use crate::yaml::word::word_of;
 
 /// Id of an experiment: its file name without ending, `ch3-limit-stop`; lower-case letters, digits and hyphens.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

@@ -1,19 +1,15 @@
 //! The excitation of a scene.
 
 use super::assumption_sheet::Takes;
-use super::at::At;
-use super::choice::Choice;
-use super::keys::{Key, Keys};
-use super::quantity::Dimension;
 use super::recipe::{
     Carried, ExcitationKind, ExcitationRecipe, ForcingOrNatural, Given, ImpulseTime, ImpulseTimeRecipe, Parameter,
     Slot, StrengthRecipe, TimingRecipe,
 };
 use super::scene::SceneReader;
-use super::schema::parts::one_of_words;
-use super::word::from_word;
-use super::yaml::Value;
 use crate::scene::{Kind, PulseShape};
+use crate::yaml::schema::one_of_words;
+use crate::yaml::word::from_word;
+use crate::yaml::{At, Choice, Dimension, Key, Keys, Value};
 
 const FORMS: [Key<'static>; 5] = [
     ("single_impulse", "One impulse"),

@@ -1,7 +1,6 @@
 //! Which keys of an experiment do not stand beside each other. The reader says why, the JSON Schema follows.
 
-use super::diagnostic::{Findings, Span};
-use super::keys::Keys;
+use crate::yaml::{Findings, Keys, Span};
 
 /// The lists that a row may keep; at most one of them, as all lists of a row are of one length.
 const LISTS: [&str; 4] = ["trace", "energies", "shape", "each_cycle"];

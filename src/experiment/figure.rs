@@ -2,22 +2,17 @@
 
 use serde_json::json;
 
-use super::at::At;
 use super::columns::{Columns, Role};
 use super::definition::Case;
-use super::diagnostic::{Findings, Span};
 use super::figure_spec::{
     AnimationSpec, Axis, AxisScale, AxisUnit, Band, Drawing, FigureSpec, Level, Only, Panel, PeakMarks, Strip,
 };
-use super::keys::Keys;
-use super::quantity::worth;
-use super::reader::{number, scalar};
-use super::schema::parts;
 use super::sweep::{NAME, is_name};
-use super::word::{from_word, word_of};
-use super::yaml::Value;
 use crate::measure::Measure;
 use crate::text::number::compact;
+use crate::yaml::reader::{number, scalar};
+use crate::yaml::word::{from_word, word_of};
+use crate::yaml::{At, Findings, Keys, Span, Value, schema, worth};
 
 /// What stands after the id in the name of the drawing of what is simulated; no figure has it.
 pub(crate) const SCENE_DRAWING: &str = "scene";
@@ -369,7 +364,7 @@ fn read_peaks(at: At<'_>) -> Option<PeakMarks> {
                 share if share > 0.0 && share < 1.0 => Some(share),
                 _ => findings.wrong(node.span, "a prominence is a share of the y axis, between 0 and 1"),
             },
-            |it| parts::inner_share(it.about()),
+            |it| schema::inner_share(it.about()),
         )
     });
     let most = keys.optional("most", "Peaks at most", |at| at.count("peaks", 50));

@@ -5,13 +5,10 @@ use std::time::Duration;
 
 use serde_json::json;
 
-use super::at::At;
-use super::diagnostic::Findings;
-use super::quantity::{Dimension, parse_number, parse_quantity};
-use super::reader::scalar;
-use super::schema::parts::{self, NUMBER, PREFIX};
-use super::yaml::Node;
 use crate::dynamics::Limit;
+use crate::yaml::reader::scalar;
+use crate::yaml::schema::{self, NUMBER, PREFIX};
+use crate::yaml::{At, Dimension, Findings, Node, parse_number, parse_quantity};
 
 /// Longest time that can be asked for: a year.
 const LONGEST: f64 = 31_557_600.0;
@@ -73,7 +70,7 @@ pub(super) fn read_limit(at: At<'_>) -> Option<Limit> {
         let read = |node: &Node, findings: &Findings| {
             part(node, events, "a whole number of events from 1 to 1e15", "1e8", findings)
         };
-        at.form(read, |it| parts::between(it.about(), 1.0, MOST_EVENTS))
+        at.form(read, |it| schema::between(it.about(), 1.0, MOST_EVENTS))
     });
     let time = keys.optional("time", "Processor time of a row; 10 min unless stated", |at| {
         let read =

@@ -1,9 +1,8 @@
 //! Where in a file a part of its meaning is written.
 
 use super::assumption_sheet::assumption_of;
-use super::diagnostic::Findings;
 use super::recipe::Part;
-use super::yaml::{Node, Value, read_tree};
+use crate::yaml::{Findings, Node, Value, read_tree};
 
 /// The line, counted from 1, on which the leaf at `path` of an experiment's or the assumptions' meaning is written, or the
 /// part that it belongs to if it has no line of its own. `None` if the text is no YAML, or nothing in it answers to the path.

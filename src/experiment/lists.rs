@@ -1,12 +1,10 @@
 //! The lists that a row may keep: `trace`, `energies`, `shape`, `each_cycle`.
 
 use super::assumption_reader::MOST_CYCLES;
-use super::at::At;
-use super::keys::Keys;
 use super::refined::share;
-use super::word::words;
-use super::yaml::Value;
 use crate::measure::{CycleSpec, CycleValue, EnergySpec, Measure, ShapeOf, ShapeSpec, Tolerance, TraceSpec};
+use crate::yaml::word::words;
+use crate::yaml::{At, Keys, Value};
 
 /// Most samples of a time history.
 const MOST_SAMPLES: u32 = 1_000_000;

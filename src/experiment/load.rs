@@ -6,14 +6,12 @@ use std::path::Path;
 
 use super::recipe::Assumptions;
 use crate::atomic::from_here;
+use crate::yaml::{At, Findings, LONGEST, Problems, read_tree, too_long};
 
 use super::assumption_reader::parse_assumptions;
 use super::assumption_sheet::AssumptionSheet;
-use super::at::At;
 use super::definition::{Experiment, ExperimentId};
-use super::diagnostic::{Findings, Problems};
 use super::validate::parse_experiment;
-use super::yaml::{LONGEST, read_tree, too_long};
 use crate::text::utf8::decode;
 
 /// Reads an experiment; its id is the file's name without ending. Every case is tried against `assumptions`.

@@ -1,14 +1,12 @@
 //! The point of a curve that is looked for: `maximise`, `onset`.
 
-use super::at::At;
 use super::definition::{Maximise, SearchPoint};
 use super::range::numbers;
-use super::reader::no_such;
 use super::recipe::Parameter;
-use super::schema::parts;
-use super::word::{from_word, words};
-use super::yaml::Value;
 use crate::measure::Measure;
+use crate::yaml::reader::no_such;
+use crate::yaml::word::{from_word, words};
+use crate::yaml::{At, Value, schema};
 
 const OVER: &str = "A parameter";
 const IN: &str = "Increasing points";
@@ -48,7 +46,7 @@ pub(super) fn read_onset(at: At<'_>) -> Option<Maximise> {
     })?;
     let (measure, (over, grid)) = (measure?, how?);
     if !measure.is_count() {
-        let message = format!("`{}` has no onset: it is no number of events", super::word::word_of(measure));
+        let message = format!("`{}` has no onset: it is no number of events", crate::yaml::word::word_of(measure));
         let help = "events are counted by separations, floor_impacts, ceiling_impacts, stop_impacts".to_owned();
         return at.report(message, Some(help));
     }
@@ -82,7 +80,7 @@ fn of_one_measure<T>(
             let name = what.replace(' ', "_");
             let how = it.shared(&name, "Over which parameter, and where it is looked for", &how);
             let measures = words::<Measure>().iter().filter(|word| from_word(word).is_some_and(&fits));
-            parts::one_of_keys(it.about(), measures.map(|measure| (*measure, how.clone())))
+            schema::one_of_keys(it.about(), measures.map(|measure| (*measure, how.clone())))
         },
     )
 }

@@ -1,9 +1,9 @@
 //! The `map` of a figure: two columns for the place, one for the colour.
 
-use super::at::At;
 use super::columns::Role;
 use super::figure::{FigureReader, column_name};
 use super::figure_spec::{Best, MapSpec, Mark};
+use crate::yaml::At;
 
 impl FigureReader<'_> {
     /// `{x: damper_x, y: damper_y, value: velocity_ratio, by: sweep, mark: {x: force_x, y: force_y, label: force}}`.

@@ -1,9 +1,8 @@
 //! What an experiment measures: the measures that are named, and those that come with them.
 
-use super::at::At;
-use super::diagnostic::Span;
-use super::word::word_of;
 use crate::measure::Measure;
+use crate::yaml::word::word_of;
+use crate::yaml::{At, Span};
 
 /// Measures, each with its companions, and where they stand; none of them twice.
 pub(super) fn read_measures(at: At<'_>) -> Option<Vec<(Measure, Span)>> {

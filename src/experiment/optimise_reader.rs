@@ -2,19 +2,14 @@
 
 use serde_json::json;
 
-use super::at::At;
-use super::diagnostic::{Findings, Span};
-use super::keys::Keys;
 use super::measures::read_measure;
 use super::optimise::{Candidate, Goal, Landscape, Optimise, Search, SearchKind, SearchSpacing};
-use super::quantity::Dimension;
-use super::reader::count;
 use super::recipe::GapWord;
-use super::schema::parts;
 use super::sweep::{NAME, is_name};
-use super::word::word_of;
-use super::yaml::Value;
 use crate::measure::Measure;
+use crate::yaml::reader::count;
+use crate::yaml::word::word_of;
+use crate::yaml::{At, Dimension, Findings, Keys, Span, Value, schema};
 
 /// Most individuals of a population.
 const MOST_INDIVIDUALS: u32 = 100_000;
@@ -180,7 +175,7 @@ fn read_genetic(at: At<'_>) -> Option<Search> {
         // Found too small only if nothing else is wrong here.
         at.form(
             |node, findings| Some((count(node, "individuals", MOST_INDIVIDUALS, findings)?, node.span)),
-            |it| parts::count(it.about(), "individuals", FEWEST_INDIVIDUALS, MOST_INDIVIDUALS),
+            |it| schema::count(it.about(), "individuals", FEWEST_INDIVIDUALS, MOST_INDIVIDUALS),
         )
     });
     let elites = keys.optional("elites", "Individuals that live on", |at| {

@@ -3,13 +3,10 @@
 use std::iter;
 
 use super::about_study::MOST_CHAPTERS;
-use super::at::At;
 use super::columns::{Columns, Lists, TableParts};
 use super::continuation_reader::{ReadContinuation, read_continuation};
 use super::definition::{Case, Maximise, Source};
-use super::diagnostic::{Findings, Span};
 use super::exclusions::{check_lists, check_mean, check_rows};
-use super::keys::Keys;
 use super::lists::{read_each_cycle, read_energies, read_shape, read_tolerances, read_trace};
 use super::looked_for::{read_maximise, read_onset};
 use super::measures::{bring, read_measures};
@@ -22,6 +19,7 @@ use super::starts_reader::{ReadStarts, read_starts};
 use super::stated::{STATED, Statement, read_statements};
 use super::sweep::{ReadSweep, read_sweep};
 use crate::measure::{CycleSpec, EnergySpec, Measure, ShapeOf, ShapeSpec, SolverChoice, Tolerance, TraceSpec};
+use crate::yaml::{At, Findings, Keys, Span};
 
 /// What an experiment is about; `None` is a part with a mistake.
 pub(super) struct Head {

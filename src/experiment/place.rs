@@ -3,18 +3,15 @@
 use serde_json::json;
 
 use super::assumption_sheet::{Quantity, Takes};
-use super::at::At;
-use super::keys::Keys;
-use super::quantity::Dimension;
-use super::reader::number;
 use super::recipe::{
     ArrayRecipe, AssumptionName, AssumptionValue, Coordinate, Given, ObserveRecipe, Parameter, PlaceRecipe,
     PointsRecipe, Slot,
 };
 use super::scene::{AT, MOST_DAMPERS, SceneReader};
-use super::schema::parts::between;
-use super::yaml::{Node, Value};
 use crate::scene::{Kind, Take};
+use crate::yaml::reader::number;
+use crate::yaml::schema::between;
+use crate::yaml::{At, Dimension, Keys, Node, Value};
 
 impl SceneReader<'_> {
     /// One coordinate a side; `along` are the parameters that may stand for them.

@@ -5,14 +5,11 @@
 
 use serde_json::json;
 
-use super::at::At;
-use super::diagnostic::{Findings, Span};
 use super::figure_spec::AxisScale;
-use super::reader::scalar;
 use super::recipe::{Parameter, ParameterValue, Takes};
-use super::schema::parts;
-use super::word::word_of;
-use super::yaml::{Node, Value};
+use crate::yaml::reader::scalar;
+use crate::yaml::word::word_of;
+use crate::yaml::{At, Findings, Node, Span, Value, schema};
 
 /// Most points of all sweeps of a file together.
 pub(super) const MOST_POINTS: u32 = 100_000;
@@ -49,7 +46,7 @@ pub(super) fn numbers(at: At<'_>, parameter: Option<Parameter>) -> Option<Vec<f6
         ParameterValue::Number(number) => Some(*number),
         _ => at.wrong("numbers are wanted here"),
     });
-    super::reader::all(numbers)
+    crate::yaml::reader::all(numbers)
 }
 
 pub(super) fn too_many<T>(at: At<'_>, span: Span, points: f64) -> Option<T> {
@@ -99,7 +96,7 @@ pub(super) fn value(at: At<'_>, parameter: Option<Parameter>) -> Option<Paramete
                 })
             };
             let words =
-                |about: &str| parts::one_of_words(about, &known.iter().map(|word| word_of(*word)).collect::<Vec<_>>());
+                |about: &str| schema::one_of_words(about, &known.iter().map(|word| word_of(*word)).collect::<Vec<_>>());
             at.form(read, |it| words(it.about()))
         }),
         Some(Takes::RatioOrInfinite) => by_kind(at, "", takes, |at| {

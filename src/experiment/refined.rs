@@ -5,18 +5,14 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::at::At;
 use super::definition::{Case, Experiment, differing_in};
-use super::diagnostic::Findings;
 use super::figure_spec::AxisScale;
 use super::measures::read_measure;
-use super::quantity::parse_percent;
 use super::range::{between, end, in_order, rounded};
-use super::reader::{number, scalar};
 use super::recipe::{Parameter, ParameterValue};
-use super::schema::parts;
-use super::yaml::{Node, Value};
 use crate::measure::Measure;
+use crate::yaml::reader::{number, scalar};
+use crate::yaml::{At, Findings, Node, Value, parse_percent, schema};
 
 /// Most points of a curve.
 const MOST_POINTS: u32 = 20_000;
@@ -135,7 +131,7 @@ pub(super) fn share(at: At<'_>) -> Option<f64> {
     };
     let percent = || json!({"type": "string", "pattern": r"^\s*[0-9.]+\s*%\s*$"});
     at.named("share", "A share, for example 1 %", |at| {
-        at.form(read, |it| parts::any_of(it.about(), vec![percent(), parts::inner_share(it.about())]))
+        at.form(read, |it| schema::any_of(it.about(), vec![percent(), schema::inner_share(it.about())]))
     })
 }
 

@@ -3,11 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::definition::{Case, Experiment};
-use super::diagnostic::Span;
 use super::line::{exactly, part_of};
 use super::recipe::{Parameter, Part, RecipeError};
-use super::word::word_of;
-use super::yaml::{Node, Value};
+use crate::yaml::word::word_of;
+use crate::yaml::{Node, Span, Value};
 
 /// Where the values of an experiment's cases are written.
 pub(super) struct Places<'t> {

@@ -6,18 +6,15 @@ use serde_json::json;
 
 use super::assumption_reader::{AVERAGE, SKIP, read_average, read_skip};
 use super::assumption_sheet::{AssumptionSheet, Cycles, Takes};
-use super::at::At;
+use super::assumptions_schema;
 use super::definition::Transient;
-use super::diagnostic::{Findings, Span};
-use super::keys::Keys;
 use super::limit::read_limit;
-use super::quantity::Dimension;
 use super::recipe::{AssumptionName, AssumptionValue};
 use super::scene::assumption;
-use super::schema::assumptions;
 use super::solver::read_solver;
 use crate::dynamics::{Limit, Until};
 use crate::measure::{NamedRows, Settings, SolverChoice};
+use crate::yaml::{At, Dimension, Findings, Keys, Span};
 
 /// Perturbed starts of a chaotic point, unless an experiment says.
 const USUAL_ENSEMBLE: u32 = 32;
@@ -136,7 +133,8 @@ fn given_run(at: At<'_>, sheet: &AssumptionSheet) -> Option<GivenRun> {
         if at.is_word("none") {
             return Some(BTreeMap::new());
         }
-        let name = |at: At<'_>| at.form(|node, findings| sheet.named(node, findings), |_| assumptions::any(sheet));
+        let name =
+            |at: At<'_>| at.form(|node, findings| sheet.named(node, findings), |_| assumptions_schema::any(sheet));
         at.one_or_more(|at| Some((name(at)?, at.span()))).map(|names| names.into_iter().collect())
     });
     let most = "The most that a row may take; one that reaches it has failed, with the reason, and the others go on";

@@ -8,21 +8,17 @@ use serde_json::json;
 
 use super::assumption_reader::{fits, read_curve};
 use super::assumption_sheet::{ASSUMPTIONS, AssumptionSheet, Quantity, Takes};
-use super::at::{At, Sketch};
-use super::diagnostic::{Findings, Span};
-use super::keys::Keys;
-use super::quantity::{Dimension, parse_number};
+use super::assumptions_schema;
 use super::recipe::{
     AssumptionName, Assumptions, Carried, ContactDampingConstant, ContactDampingRatio, ContactDampingRecipe,
     DamperRecipe, Filling, FloorStiffness, GapRecipe, Given, MassReading, MassRecipe, MeanRatio, Parameter, Recipe,
     Reference, Slot, StiffnessRecipe, StopRecipe, SurfaceRecipe, SweptSlots, WallRecipe,
 };
-use super::schema::assumptions;
 use super::structure::read_structure;
-use super::word::{from_word, word_of};
-use super::yaml::{Node, Value};
 use crate::measure::Comparison;
 use crate::scene::{KINDS, Kind, STANDARD_GRAVITY};
+use crate::yaml::word::{from_word, word_of};
+use crate::yaml::{At, Dimension, Findings, Keys, Node, Sketch, Span, Value, parse_number};
 
 /// Stands where the file says `swept` until the sweep's first case takes its place.
 const PLACEHOLDER: f64 = 1.0;
@@ -510,7 +506,7 @@ pub(super) fn assumption(
         }
         At::Node(node, findings) => names_assumption(node).then(|| named(sheet, node, takes, &place(), findings)),
         At::Sketch(it) => {
-            it.add(assumptions::assumed(it, sheet, takes));
+            it.add(assumptions_schema::assumed(it, sheet, takes));
             None
         }
     }

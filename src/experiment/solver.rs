@@ -1,8 +1,7 @@
 //! A `solver`: `event_driven`, or `{fixed_step: {time_step: 0.1 ms}}`.
 
-use super::at::At;
-use super::quantity::Dimension;
 use crate::measure::SolverChoice;
+use crate::yaml::{At, Dimension};
 
 pub(super) fn read_solver(at: At<'_>) -> Option<SolverChoice> {
     let names = [("event_driven", ""), ("fixed_step", "Steps of one length, contacts looked for at the end of each")];

@@ -1,12 +1,10 @@
 //! The start of a scene: initial conditions in the place of static equilibrium.
 
-use super::at::At;
-use super::quantity::Dimension;
-use super::reader::unknown;
 use super::scene::SceneReader;
-use super::schema::parts::word;
-use super::yaml::Value;
 use crate::scene::{ParticleStart, Start};
+use crate::yaml::reader::unknown;
+use crate::yaml::schema::word;
+use crate::yaml::{At, Dimension, Value};
 
 impl SceneReader<'_> {
     /// `{displacement: 2 mm, velocity: 0.1 m/s, particles: [{height: 10 mm, velocity: -1 m/s}, on_floor]}`.

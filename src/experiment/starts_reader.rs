@@ -1,12 +1,7 @@
 //! The `starts` of an experiment: nodes to [`Starts`].
 
-use super::at::At;
-use super::diagnostic::Span;
-use super::quantity::Dimension;
-use super::reader;
-use super::schema::parts;
 use super::starts::{HeightBox, Interval, ParticleBox, Starts};
-use super::yaml::Value;
+use crate::yaml::{At, Dimension, Span, Value, reader, schema};
 
 /// Most starts of a case.
 const MOST_STARTS: u32 = 100_000;
@@ -73,7 +68,7 @@ fn particle(at: At<'_>) -> Option<ParticleBox> {
 }
 
 fn height(key: &str, at: At<'_>) -> Option<HeightBox> {
-    let share = |at: At<'_>| at.form(reader::number, |sketch| parts::between(sketch.about(), 0.0, 1.0));
+    let share = |at: At<'_>| at.form(reader::number, |sketch| schema::between(sketch.about(), 0.0, 1.0));
     let (heights, most) = match key {
         "height" => {
             let read = |at: At<'_>| at.quantity(Dimension::Length);

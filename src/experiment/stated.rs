@@ -17,12 +17,8 @@ use std::fmt;
 use serde_json::json;
 
 use super::about_study::chapter_number;
-use super::at::At;
-use super::diagnostic::{Findings, Span};
-use super::quantity::{Amount, parse_amount};
 use super::scene::names_assumption;
-use super::schema::parts;
-use super::yaml::{Node, Value};
+use crate::yaml::{Amount, At, Findings, Node, Span, Value, parse_amount, schema};
 
 /// The key of statements, in an experiment and in the assumptions file.
 pub(super) const STATED: &str = "stated";
@@ -110,7 +106,7 @@ pub(super) fn read_statements(at: At<'_>) -> Option<Vec<Statement>> {
             },
             |_| {
                 let number = json!({"type": ["number", "string"]});
-                parts::any_of("A number, or a list", vec![number.clone(), parts::list("Numbers", number)])
+                schema::any_of("A number, or a list", vec![number.clone(), schema::list("Numbers", number)])
             },
         )?;
         let key = key.split('.').map(str::to_owned).collect();

@@ -3,14 +3,13 @@
 use std::collections::BTreeMap;
 
 use super::assumption_sheet::{Quantity, Takes};
-use super::at::At;
-use super::quantity::Dimension;
-use super::reader::{scalar, unknown};
 use super::recipe::{Given, Parameter, Slot, StructureRecipe};
 use super::scene::SceneReader;
-use super::schema::parts::one_of_words;
-use super::word::from_word;
 use crate::scene::{FieldValue, Form, KINDS, Kind};
+use crate::yaml::reader::{scalar, unknown};
+use crate::yaml::schema::one_of_words;
+use crate::yaml::word::from_word;
+use crate::yaml::{At, Dimension};
 
 /// Most modes that are read at all; how many a structure carries is its own affair.
 const MOST_MODES: u32 = 100_000;

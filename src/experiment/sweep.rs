@@ -9,19 +9,17 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::json;
 
-use super::at::At;
 use super::continued::{Continued, ContinuedSweep, Direction, KEYS, chains};
 use super::definition::Case;
-use super::diagnostic::Span;
 use super::range::{MOST_POINTS, by_kind, too_many, value, values};
-use super::reader::unknown;
 use super::recipe::{Parameter, ParameterValue};
 use super::refined::{Refinement, is_refined, refined};
 use super::solver::read_solver;
-use super::word::{from_word, word_of, words};
-use super::yaml::Value;
 use crate::measure::SolverChoice;
 use crate::text::words::of_column;
+use crate::yaml::reader::unknown;
+use crate::yaml::word::{from_word, word_of, words};
+use crate::yaml::{At, Span, Value};
 
 /// A sweep as read.
 pub(super) struct ReadSweep {

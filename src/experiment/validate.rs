@@ -4,21 +4,18 @@
 //! scene. The last check resolves every case into its scene: what physics refuses is found before anything runs.
 
 use super::assumption_sheet::AssumptionSheet;
-use super::at::At;
 use super::check::Checks;
 use super::definition::{Experiment, ExperimentId};
-use super::diagnostic::{Findings, Problems, Span};
 use super::figure::FigureReader;
-use super::keys::Keys;
 use super::parts::{Head, Parts, Sound};
-use super::recipe::{Assumptions, ParameterValue};
+use super::recipe::{Assumptions, Parameter, ParameterValue};
 use super::refusal::Places;
 use super::scene::ReadScene;
-use super::schema;
 use super::stated::without_source;
 use super::sweep::ReadSweep;
-use super::yaml::read_tree;
 use crate::measure::{Measure, NamedRows, Settings};
+use crate::yaml::word::words;
+use crate::yaml::{At, Findings, Keys, Problems, Span, described, read_tree};
 
 /// Reads an experiment from its text; `file` only names it in messages.
 ///
@@ -50,7 +47,7 @@ pub(crate) fn parse_with(
     assumptions: &Assumptions,
     cases: Cases<'_>,
 ) -> Result<Experiment, Problems> {
-    let findings = Findings::default();
+    let findings = Findings::beside_sweep(words::<Parameter>());
     let experiment = read_tree(text, &findings).and_then(|root| {
         let reader = ExperimentReader { findings: &findings, assumptions, cases };
         reader.experiment(id, At::Node(&root, &findings))
@@ -64,7 +61,7 @@ pub fn experiment_schema(sheet: &AssumptionSheet) -> serde_json::Value {
     let (findings, assumptions) = (Findings::default(), sheet.assumptions());
     let reader = ExperimentReader { findings: &findings, assumptions: &assumptions, cases: Cases::Tried };
     let any = ExperimentId(String::new());
-    schema::described("Experiment", "An experiment", |at| reader.experiment(&any, at))
+    described("Experiment", "An experiment", |at| reader.experiment(&any, at))
 }
 
 struct ExperimentReader<'t> {

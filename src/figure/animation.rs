@@ -12,7 +12,7 @@ use super::error::FigureError;
 use super::geometry::{Point, Rect, simplified};
 use super::group::Group;
 use super::label;
-use super::line::Source;
+use super::source::Source;
 use super::style::{
     BLUE_INK, CURVE, Color, FRAME, GREY, GRID, GUIDE, INK, LABEL_TEXT, LEGEND_TEXT, Look, PALE, SPACE, TICK_TEXT, WIDTH,
 };

@@ -5,6 +5,7 @@ use std::fmt;
 
 use super::axis::Axis;
 use super::geometry::Rect;
+use super::shortest::shortest;
 
 /// Attributes of a group.
 #[derive(Debug, Clone, Default)]
@@ -54,13 +55,6 @@ impl fmt::Display for Attributes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)
     }
-}
-
-/// A number to so many digits in the fewest letters that read back, `1500` or `9.608e-18`; `NaN` if it is none.
-pub(super) fn shortest(number: f64, digits: usize) -> String {
-    let rounded: f64 = format!("{number:.0$e}", digits.saturating_sub(1)).parse().unwrap_or(f64::NAN);
-    let (plain, exponential) = (rounded.to_string(), format!("{rounded:e}"));
-    if exponential.len() < plain.len() { exponential } else { plain }
 }
 
 /// Text within an element.

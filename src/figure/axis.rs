@@ -3,7 +3,7 @@
 use crate::experiment::{AxisScale, AxisUnit};
 use crate::text::number::Prefix;
 
-use super::attributes::shortest;
+use super::shortest::shortest;
 
 /// Digits of the ends of an axis for programs: a thousandth of a pixel.
 const END_DIGITS: usize = 7;

@@ -6,7 +6,7 @@ use super::canvas::{Anchor, Lettering, Pen, Sheet, svg, text_width};
 use super::error::FigureError;
 use super::geometry::{Point, Rect};
 use super::label;
-use super::line::Source;
+use super::source::Source;
 use super::style::{
     BLUE_INK, Color, FRAME, GREY, GRID, INK, LABEL_TEXT, LEGEND_ROW, LEGEND_TEXT, PALE, SPACE, TICK, TICK_TEXT, WIDTH,
 };

@@ -7,7 +7,8 @@ use crate::table::{Column, Data};
 
 use super::error::FigureError;
 use super::geometry::{Point, Rect};
-use super::line::{Sample, Source};
+use super::sample::Sample;
+use super::source::Source;
 use super::style::MARKER;
 
 /// What branches are drawn by.

@@ -4,8 +4,8 @@
 use super::canvas::{Pen, Sheet};
 use super::error::FigureError;
 use super::geometry::{Point, Rect};
-use super::line::Source;
 use super::panel::Panel;
+use super::source::Source;
 use super::style::{GREY, Look, THIN_CURVE};
 use crate::experiment;
 use crate::table::Data;

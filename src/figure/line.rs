@@ -3,58 +3,16 @@
 //! Every combination of the levels of the `by` columns and of the y columns is one line. The first thing that varies
 //! among them shows as colour, the rest as dashes; where only one thing varies it shows as both.
 
-use std::collections::BTreeMap;
-
-use crate::experiment::{Band, Experiment, LineColour, Panel, START_LISTS, Stability};
-use crate::table::{Column, Data, Table};
+use crate::experiment::{Band, Panel, START_LISTS, Stability};
+use crate::table::{Column, Data};
 
 use super::branch::Branches;
 use super::error::FigureError;
 use super::group::{Group, is_outcome};
+use super::sample::Sample;
+use super::source::Source;
 use super::style::Look;
 use super::{label, searches};
-
-/// One point of a curve; NaN in y is a gap.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Sample {
-    pub x: f64,
-    pub y: f64,
-    /// Least and largest of the band around y; both y without one.
-    pub band: [f64; 2],
-}
-
-impl Sample {
-    /// Without a band.
-    pub(super) fn bare(x: f64, y: f64) -> Self {
-        Self { x, y, band: [y, y] }
-    }
-
-    /// Within its spread, if that is known.
-    fn within(x: f64, y: f64, spread: Option<f64>) -> Self {
-        let spread = spread.filter(|spread| spread.is_finite()).unwrap_or(0.0);
-        Self { x, y, band: [y - spread, y + spread] }
-    }
-
-    /// Between two stretches of one line.
-    pub(super) fn gap() -> Self {
-        Self::bare(f64::NAN, f64::NAN)
-    }
-
-    /// On the straight way to the next sample, the place at `x`; `None` if it does not lie between the two.
-    fn towards(self, next: Self, x: f64) -> Option<Self> {
-        let share = (x - self.x) / (next.x - self.x);
-        let mix = |a: f64, b: f64| a + share * (b - a);
-        (share > 0.0 && share < 1.0).then(|| Self {
-            x,
-            y: mix(self.y, next.y),
-            band: [mix(self.band[0], next.band[0]), mix(self.band[1], next.band[1])],
-        })
-    }
-
-    fn divided_by(self, one: f64) -> Self {
-        Self { x: self.x, y: self.y / one, band: self.band.map(|edge| edge / one) }
-    }
-}
 
 /// The value that a curve takes at infinite x, or without an x.
 #[derive(Debug, Clone, PartialEq)]
@@ -164,38 +122,6 @@ impl Curve {
     /// True if there is anything to see.
     pub(super) fn shows(&self) -> bool {
         self.at_infinity.is_some() || self.samples.iter().any(|sample| sample.y.is_finite())
-    }
-}
-
-/// The table behind a figure, asked for columns by name.
-#[derive(Clone, Copy)]
-pub(super) struct Source<'a> {
-    /// Whose table it is.
-    pub experiment: Option<&'a Experiment>,
-    /// Only the rows to draw.
-    pub table: &'a Table,
-    /// What the figure is called in messages.
-    pub figure: &'a str,
-    /// Colours of lines by name, as the study has them.
-    pub colours: Option<&'a BTreeMap<String, LineColour>>,
-    /// All panels of the figure: what shows in one of them looks the same in the others.
-    pub panels: &'a [Panel],
-}
-
-impl<'a> Source<'a> {
-    /// The column of that name.
-    pub(super) fn column(&self, name: &str) -> Result<&'a Column, FigureError> {
-        self.table.column(name).ok_or_else(|| FigureError::UnknownColumn {
-            figure: self.figure.to_owned(),
-            column: name.to_owned(),
-            known: self.table.columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>().join(", "),
-        })
-    }
-
-    /// The name of a y column in legends and at axes.
-    pub(super) fn label(&self, axis: &crate::experiment::Axis) -> Result<String, FigureError> {
-        let column = self.column(&axis.column)?;
-        Ok(axis.label.clone().unwrap_or_else(|| label::of_column(self.experiment, column)))
     }
 }
 

@@ -10,7 +10,7 @@ use super::error::FigureError;
 use super::field::{Field, Spot, cell_edges};
 use super::group::Group;
 use super::label;
-use super::line::Source;
+use super::source::Source;
 
 /// A place on the axes.
 #[derive(Debug, Clone, Copy, PartialEq)]

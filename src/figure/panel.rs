@@ -14,10 +14,12 @@ use super::geometry::{Point, Rect};
 use super::label;
 use super::layout::Needs;
 use super::legend::{Legend, Obstacles};
-use super::line::{Curve, Join, Sample, Source, curves};
+use super::line::{Curve, Join, curves};
 use super::peak::{PeakMark, peaks};
 use super::quoted::Quoted;
 use super::render::Beside;
+use super::sample::Sample;
+use super::source::Source;
 use super::strip::{self, Strip};
 use super::style::{CURVE, MARKER, TICK_TEXT};
 

@@ -4,7 +4,8 @@ use crate::experiment::PeakMarks;
 
 use super::axis::Axis;
 use super::geometry::Point;
-use super::line::{Curve, Sample};
+use super::line::Curve;
+use super::sample::Sample;
 use super::style::Look;
 
 /// A mark on a peak, with its place on the x axis.

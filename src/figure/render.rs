@@ -11,12 +11,12 @@ use super::canvas::svg;
 use super::error::FigureError;
 use super::layout::{Needs, Place, figure_height, places};
 use super::legend::Legend;
-use super::line::Source;
 use super::map::Map;
 use super::map_layout::MapLayout;
 use super::paint::{self, LegendPlace};
 use super::panel::{Panel, Reach};
 use super::quoted::Quoted;
+use super::source::Source;
 use super::style::{LETTER, WIDTH};
 use super::{map_paint, raster};
 

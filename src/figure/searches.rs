@@ -1,7 +1,7 @@
 //! Several searches as one line: the median of the best that each had found after so many evaluations, in steps, and a band from
 //! the least to the largest of them.
 
-use super::line::Sample;
+use super::sample::Sample;
 
 /// Of searches that give evaluations and the best value so far; one that has ended keeps its last value.
 pub(super) fn median(searches: &[(&[f64], &[f64])]) -> Vec<Sample> {

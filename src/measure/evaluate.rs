@@ -11,7 +11,7 @@ use super::undefined::in_range;
 use super::{EvaluateError, Evaluated, Measure, Rigour, Subject};
 use crate::dynamics::HybridSystem;
 use crate::measure::{Request, Settings, SolverChoice};
-use crate::scene::{Excitation, Scene, SingleMass, Structure, compile};
+use crate::scene::{Excitation, Scene, compile};
 
 /// A scene that is ready to be run with other gaps: resolved, compiled and compared with the clean structure once.
 #[derive(Debug)]
@@ -112,12 +112,4 @@ pub fn rounded(mut scene: Scene, settings: &Settings) -> Scene {
         Excitation::Harmonic { angular_frequency, .. } => *angular_frequency = TAU / round(TAU / *angular_frequency),
     }
     scene
-}
-
-/// Damping of one mass: the exponent of its free decay, c/(2m), 1/s; NaN of more than one.
-pub(super) fn decay(scene: &Scene) -> f64 {
-    match scene.structure {
-        Structure::SingleMass(SingleMass { mass, damping, .. }) => damping / (2.0 * mass),
-        _ => f64::NAN,
-    }
 }

@@ -3,9 +3,8 @@
 use std::ops::Range;
 
 use super::Measure;
-use super::evaluate::decay;
 use crate::dynamics::{Drive, Event, EventKind, Response, Sample, SampledParticle};
-use crate::scene::{Scene, drive};
+use crate::scene::{Scene, SingleMass, Structure, drive};
 
 /// A response with a trace, and the scene it is of.
 pub(super) struct History<'a> {
@@ -134,10 +133,18 @@ fn crest(a: &Sample, b: &Sample) -> Peak {
     Peak { time: a.time + low * h, height: hermite(low) }
 }
 
+/// Damping of one mass: the exponent of its free decay, c/(2m), 1/s; NaN of more than one.
+fn decay(scene: &Scene) -> f64 {
+    match scene.structure {
+        Structure::SingleMass(SingleMass { mass, damping, .. }) => damping / (2.0 * mass),
+        _ => f64::NAN,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Excitation, PulseShape, SingleMass};
+    use crate::scene::{Excitation, PulseShape};
 
     #[test]
     fn what_a_step_has_put_behind_the_end_of_its_cycle_comes_with_the_next_impulse() {

@@ -3,7 +3,7 @@
 use super::entry::{Entry, ReferenceFile};
 use super::entry_reader::parse_reference;
 use super::verdict::{Judged, Kind, Verdict};
-use crate::experiment::{Written, set_keys};
+use crate::yaml::{Written, set_keys};
 
 /// Why a verdict cannot be accepted.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

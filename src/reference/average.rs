@@ -8,7 +8,7 @@ use super::printed::Printed;
 use super::selection::same;
 use super::text::with_unit;
 use super::view::{Absence, Cell, Line, View};
-use crate::experiment::At;
+use crate::yaml::At;
 
 word! {
     "a stretch" Stretch, in_order {

@@ -9,7 +9,7 @@ use super::name::{Column, in_unit, in_unit_of};
 use super::selection::is_number;
 use super::tally::Shown;
 use super::text::{in_scale_of, percent};
-use crate::experiment::At;
+use crate::yaml::At;
 
 claim! {
     "a rise or fall" Monotone {

@@ -43,7 +43,7 @@ use super::resonance::PrintedPeak;
 use super::selection::Selection;
 use super::verdict::Verdict;
 use super::view::Source;
-use crate::experiment::{Findings, Problems};
+use crate::yaml::{Findings, Problems};
 
 /// The entries of one experiment.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -9,9 +9,9 @@ use super::mapping::{Reads, Seen, claim, forms, mapping, word};
 use super::name::{Column, in_unit_of};
 use super::resonance::Peak;
 use super::view::Source;
-use crate::experiment::At;
 use crate::measure::Measure;
 use crate::text::words::of_key;
+use crate::yaml::At;
 
 forms! {
     "a way to take a number" Extraction {

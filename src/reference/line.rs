@@ -4,9 +4,9 @@ use super::compare::COVERAGE;
 use super::selection::{Allowed, same};
 use super::text::{place, with_unit};
 use super::view::{Absence, Cell, Line, Source, View};
-use crate::experiment::At;
 use crate::measure::column_words;
 use crate::optimise::{Point, overshoot};
+use crate::yaml::At;
 
 /// A place on the abscissa: half the bracket that surely holds it is twice its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,7 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::name::{Column, TableName};
 use super::selection::Selection;
 use super::view::Source;
-use crate::experiment::{Columns, Findings, did_you_mean};
+use crate::experiment::Columns;
+use crate::yaml::{Findings, did_you_mean};
 
 /// A mapping, by what messages call it. `key: Type = required("What it is", read),` is that call of `Keys`, without the key. A
 /// reader may use what keys above it gave; the method after the type's name looks at all of them together.
@@ -23,7 +24,7 @@ macro_rules! mapping {
         }
 
         impl $name {
-            pub(crate) fn read(at: $crate::experiment::At<'_>) -> Option<Self> {
+            pub(crate) fn read(at: $crate::yaml::At<'_>) -> Option<Self> {
                 let all = [$(($crate::reference::mapping::key!($field $($key)?), stringify!($how))),+];
                 let required = all.iter().filter(|(_, how)| *how == "required").map(|(key, _)| *key);
                 let keys = at.keys_with($what, &required.collect::<Vec<_>>())?;
@@ -102,8 +103,8 @@ macro_rules! forms {
         }
 
         impl $name {
-            pub(crate) fn read(at: $crate::experiment::At<'_>) -> Option<Self> {
-                type Read = fn($crate::experiment::At<'_>) -> Option<$name>;
+            pub(crate) fn read(at: $crate::yaml::At<'_>) -> Option<Self> {
+                type Read = fn($crate::yaml::At<'_>) -> Option<$name>;
                 let forms = [$($(($word, $about, (|at| $read(at).map(Self::$variant)) as Read),)?)+];
                 at.choose($what, &forms.map(|(word, about, _)| (word, about)), |choice| {
                     let (.., read) = forms.into_iter().find(|(word, ..)| *word == choice.name())?;

@@ -12,7 +12,7 @@ use super::tally::{Decision, Tally};
 use super::text::significant;
 use super::tube::points;
 use super::view::{Absence, View};
-use crate::experiment::{At, Value};
+use crate::yaml::{At, Value};
 
 claim! {
     "a mode shape" ModeShape, over_its_sides {

@@ -8,7 +8,8 @@ use std::ops::Deref;
 
 use serde::{Serialize, Serializer};
 
-use crate::experiment::{At, Columns, Span};
+use crate::experiment::Columns;
+use crate::yaml::{At, Span};
 
 /// A name with its place in the file, which is no part of what it means.
 #[derive(Debug, Clone)]

@@ -13,7 +13,7 @@ use super::tally::{Decision, Outcome, Shown, Tally, strict};
 use super::text::{percent, significant, with_unit};
 use super::view::{Absence, Cell, Source, View};
 use super::words;
-use crate::experiment::At;
+use crate::yaml::At;
 
 /// A place in a map: a number for each coordinate, or the column that holds it (`damper_x: force_x`).
 #[derive(Debug, Clone, PartialEq, Serialize)]

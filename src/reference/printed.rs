@@ -6,8 +6,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::mapping::Reads;
-use crate::experiment::At;
 use crate::measure::Measure;
+use crate::yaml::At;
 
 /// A number with its unit, as printed.
 #[derive(Debug, Clone, PartialEq, Serialize)]

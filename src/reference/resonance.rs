@@ -14,9 +14,9 @@ use super::printed::Printed;
 use super::selection::Selection;
 use super::text::{symbol, with_unit};
 use super::view::{Absence, Cell, Line, View};
-use crate::experiment::At;
 use crate::measure::column_words;
 use crate::optimise::{Parabola, Point};
+use crate::yaml::At;
 
 word! {
     "a peak" Peak {

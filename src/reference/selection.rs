@@ -7,8 +7,9 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::name::{Column, in_unit_of};
-use crate::experiment::{At, Columns, Value};
+use crate::experiment::Columns;
 use crate::table::Data;
+use crate::yaml::{At, Value};
 
 /// Conditions by column; all must hold. Empty selects every row.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]

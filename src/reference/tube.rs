@@ -12,7 +12,7 @@ use super::name::Column;
 use super::tally::{Decision, Tally};
 use super::text::{significant, symbol, with_unit};
 use super::view::{Absence, Line, View};
-use crate::experiment::At;
+use crate::yaml::At;
 
 claim! {
     "a curve" Curve {

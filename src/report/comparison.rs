@@ -8,6 +8,7 @@ use crate::text::number::{compact, signed, significant};
 use super::markdown::{Align, MarkdownTable, first_sentence, one_line};
 use super::motions::by_count;
 use super::tally::{Tally, agrees, role, shown};
+use super::view::{anchor, name};
 use crate::text::words::counted;
 
 /// The entry that a page leads with: the worst, and of several the first.
@@ -319,16 +320,6 @@ pub(super) fn explanation(judged: &Judged) -> String {
     } else {
         "Not explained.".to_owned()
     }
-}
-
-/// The entry's name without its experiment's.
-pub(super) fn name(judged: &Judged) -> &str {
-    judged.id.rsplit('/').next().unwrap_or(&judged.id)
-}
-
-/// A name as the target of a link within a page; the prefix keeps it apart from headings.
-pub(super) fn anchor(name: &str) -> String {
-    format!("entry-{name}")
 }
 
 fn entry(judged: &Judged) -> String {

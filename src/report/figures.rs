@@ -1,13 +1,10 @@
 //! Figures of one experiment.
 
-use std::collections::BTreeMap;
-
 use serde_json::json;
 
-use super::quoted::quoted;
-use crate::experiment::{Drawing, Experiment, FigureSpec, LineColour, SCENE_DRAWING};
-use crate::figure::{Beside, FigureError, Picture, Quoted, draw, draw_svg, figure_stem};
-use crate::reference::{Judged, ReferenceFile};
+use super::quoted::{Said, quoted};
+use crate::experiment::{Drawing, Experiment, FigureSpec, SCENE_DRAWING};
+use crate::figure::{FigureError, Picture, draw, draw_svg, figure_stem};
 use crate::study::{FileHash, PRESENTATION_VERSION, fingerprint};
 use crate::table::Table;
 
@@ -22,24 +19,6 @@ pub fn scene_name(experiment: &Experiment) -> String {
 pub fn figure_name(experiment: &Experiment, figure: &FigureSpec) -> String {
     let ending = if matches!(figure.drawing, Drawing::Animation(_)) { "svg" } else { "png" };
     format!("{}.{ending}", figure_stem(experiment, figure))
-}
-
-/// What the study says of an experiment, and what became of it.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Said<'a> {
-    pub reference: Option<&'a ReferenceFile>,
-    pub judged: &'a [Judged],
-    /// Period of the impulses, s.
-    pub impulses: Option<f64>,
-    /// Colours of lines by name, as the study has them.
-    pub colours: Option<&'a BTreeMap<String, LineColour>>,
-}
-
-impl<'a> Said<'a> {
-    /// What a figure shows beside its table.
-    fn beside(self, quoted: &'a [Quoted]) -> Beside<'a> {
-        Beside { quoted, impulses: self.impulses, colours: self.colours }
-    }
 }
 
 /// One figure, with the numbers that the study quotes.

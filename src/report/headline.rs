@@ -1,7 +1,5 @@
 //! The findings in a paragraph: what stands, what does not, and what the lost inputs prevent, counted from the verdicts.
 
-use std::collections::BTreeMap;
-
 use crate::experiment::AboutStudy;
 use crate::reference::{Judged, Kind, Role, Verdict};
 
@@ -9,7 +7,7 @@ use super::findings;
 use super::markdown::one_line;
 use super::tally::{Tally, agrees};
 use super::view::ExperimentView;
-use super::what_stands::PAGE as WHAT_STANDS;
+use super::what_stands::{PAGE as WHAT_STANDS, missing_inputs};
 use crate::text::words::counted;
 
 /// Experiments or inputs that are named one by one.
@@ -144,19 +142,6 @@ fn undecided(all: &[&Judged]) -> String {
         sentences.push(format!("{lie} within the chaotic spread or the grid of the sweep."));
     }
     if sentences.is_empty() { String::new() } else { format!("- **Cannot be decided:** {}\n", sentences.join(" ")) }
-}
-
-/// The inputs that blocked entries name, with how many do, the most wanted first: `contact damping (24)`.
-pub(super) fn missing_inputs<'a>(all: impl Iterator<Item = &'a Judged>) -> Vec<String> {
-    let mut inputs = BTreeMap::<&str, usize>::new();
-    for one in all.filter(|one| one.verdict == Verdict::Blocked) {
-        for input in one.blocked_by.iter().flat_map(|inputs| inputs.split(" and ")) {
-            *inputs.entry(input.trim_start_matches("the ")).or_default() += 1;
-        }
-    }
-    let mut inputs: Vec<_> = inputs.into_iter().collect();
-    inputs.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-    inputs.into_iter().map(|(input, count)| format!("{input} ({count})")).collect()
 }
 
 fn link(view: &ExperimentView<'_>) -> String {

@@ -5,9 +5,10 @@ use std::fs;
 
 use rayon::prelude::*;
 
-use super::figures::{Said, figure_name, picture, scene_name, shown, vector};
+use super::figures::{figure_name, picture, scene_name, shown, vector};
 use super::json::read_json;
 use super::publication::{inputs, reasons_beside, shows_same_scene};
+use super::quoted::Said;
 use super::verdicts::Judgement;
 use super::views::{self, report_of};
 use crate::atomic::{self, FileError};

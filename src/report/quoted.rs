@@ -4,14 +4,33 @@
 //! cell of a row a value at the row's place, a mean a value without one. Ratios of two numbers, slopes and deviations stand
 //! nowhere.
 
-use super::figures::Said;
-use crate::experiment::{Drawing, Experiment, FigureSpec};
-use crate::figure::{Known, Quoted, QuotedAt};
+use std::collections::BTreeMap;
+
+use crate::experiment::{Drawing, Experiment, FigureSpec, LineColour};
+use crate::figure::{Beside, Known, Quoted, QuotedAt};
 use crate::reference::{
-    Allowed, Check, Comparison, Entry, Extraction, Feature, Judged, Printed, PrintedPeak, Selection,
+    Allowed, Check, Comparison, Entry, Extraction, Feature, Judged, Printed, PrintedPeak, ReferenceFile, Selection,
 };
 use crate::table::Table;
 use crate::text::words;
+
+/// What the study says of an experiment, and what became of it.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Said<'a> {
+    pub reference: Option<&'a ReferenceFile>,
+    pub judged: &'a [Judged],
+    /// Period of the impulses, s.
+    pub impulses: Option<f64>,
+    /// Colours of lines by name, as the study has them.
+    pub colours: Option<&'a BTreeMap<String, LineColour>>,
+}
+
+impl<'a> Said<'a> {
+    /// What a figure shows beside its table.
+    pub fn beside(self, quoted: &'a [Quoted]) -> Beside<'a> {
+        Beside { quoted, impulses: self.impulses, colours: self.colours }
+    }
+}
 
 /// The numbers that the study quotes of what a figure draws; each once.
 pub(super) fn quoted(experiment: &Experiment, figure: &FigureSpec, table: &Table, said: Said<'_>) -> Vec<Quoted> {

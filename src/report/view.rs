@@ -1,6 +1,5 @@
 //! What reports are written from, gathered by the caller.
 
-use super::comparison::{anchor, name};
 use crate::experiment::Experiment;
 use crate::reference::{Judged, NotJudged};
 use crate::scene::EffectUse;
@@ -89,4 +88,14 @@ pub struct PageView<'a> {
     pub accuracy: Option<AccuracyLinks>,
     /// The way to `reports/`: empty or ends in `/`.
     pub to_reports: &'a str,
+}
+
+/// The entry's name without its experiment's.
+pub(super) fn name(judged: &Judged) -> &str {
+    judged.id.rsplit('/').next().unwrap_or(&judged.id)
+}
+
+/// A name as the target of a link within a page; the prefix keeps it apart from headings.
+pub(super) fn anchor(name: &str) -> String {
+    format!("entry-{name}")
 }

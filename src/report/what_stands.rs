@@ -6,7 +6,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::headline::missing_inputs;
 use super::markdown::one_line;
 use super::tally::agrees;
 use super::view::{AssumptionView, ExperimentView};
@@ -247,4 +246,17 @@ fn in_question(questions: &[Question<'_>]) -> String {
         }
     }
     text + "\n"
+}
+
+/// The inputs that blocked entries name, with how many do, the most wanted first: `contact damping (24)`.
+pub(super) fn missing_inputs<'a>(all: impl Iterator<Item = &'a Judged>) -> Vec<String> {
+    let mut inputs = BTreeMap::<&str, usize>::new();
+    for one in all.filter(|one| one.verdict == Verdict::Blocked) {
+        for input in one.blocked_by.iter().flat_map(|inputs| inputs.split(" and ")) {
+            *inputs.entry(input.trim_start_matches("the ")).or_default() += 1;
+        }
+    }
+    let mut inputs: Vec<_> = inputs.into_iter().collect();
+    inputs.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    inputs.into_iter().map(|(input, count)| format!("{input} ({count})")).collect()
 }

@@ -4,7 +4,6 @@
 //! Soft walls on one mass add the ceiling side of the enclosure as a second coordinate s = x_top − x, so that
 //! M = [[m, mt], [mt, mt]] with mt taken off the base, K = diag(ks, kw).
 
-use super::normal_modes::add_square;
 use super::{
     ContactDamping, ContactEnd, Curve, Damper, Excitation, Matrices, PulseShape, Scene, SingleMass, Structure, Surface,
     Walls,
@@ -62,7 +61,7 @@ pub fn compile(scene: &Scene) -> Result<HybridSystem, CompileError> {
     for damper in &scene.dampers {
         let row = model.shape(damper.at);
         if damper.enclosure_mass > 0.0 {
-            add_square(&mut mass, damper.enclosure_mass, &row);
+            mass.add_square(damper.enclosure_mass, &row);
         }
         particles.push(particle(damper, &row, &row)?);
     }

@@ -21,7 +21,7 @@ pub use definition::{Observation, STANDARD_GRAVITY, Scene, Take};
 pub use design::Design;
 pub use effect::{EffectUse, effects};
 pub use excitation::{Excitation, NoBinomialPulse, PulseShape};
-pub use normal_modes::{NormalMode, add_square, normal_modes};
+pub use normal_modes::{NormalMode, normal_modes};
 pub use start::{ParticleStart, Start, StartError};
 pub use structure::{
     CantileverBeam, ClampedBeam, Field, FieldValue, Form, KINDS, Kind, Matrices, Model, Point, SingleMass, Structure,

@@ -91,17 +91,7 @@ fn at_rest(system: &HybridSystem) -> (Matrix, Matrix) {
         if let Some(slot) = springs.iter().position(|(with, _)| *with == j) {
             row[n + slot] = 1.0;
         }
-        add_square(&mut mass, particle.mass, &row);
+        mass.add_square(particle.mass, &row);
     }
     (mass, stiffness)
-}
-
-/// A += x φ φᵀ.
-pub fn add_square(matrix: &mut Matrix, x: f64, row: &[f64]) {
-    let order = matrix.order;
-    for (i, a) in row.iter().enumerate() {
-        for (j, b) in row.iter().enumerate() {
-            matrix.entries[i * order + j] += x * a * b;
-        }
-    }
 }

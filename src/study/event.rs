@@ -1,6 +1,6 @@
 //! What happens in a run, for progress bars and logs; the runner itself prints nothing.
 
-use super::record::Failures;
+use super::failures::Failures;
 use crate::experiment::ExperimentId;
 
 /// Something that happened.

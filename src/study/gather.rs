@@ -3,10 +3,10 @@
 //! Nothing is taken on trust: each table has to be whole (its seal), of its shard and of today's inputs, and every row of
 //! the plan has to come exactly once. Then the join is a matter of order, and the bytes are those of a single run.
 
+use super::failures::Failures;
 use super::job::jobs;
 use super::layout::Layout;
 use super::plan::Item;
-use super::record::Failures;
 use super::shard::{NotThePart, ROW, Shard, divisible, owner, owners};
 use super::task::Finished;
 use crate::experiment::ExperimentId;

@@ -3,7 +3,7 @@
 use super::variant::Variant;
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::experiment::{AssumptionName, Case, Experiment, RowSource, curves};
+use crate::experiment::{AssumptionName, Case, Experiment};
 use crate::measure::{Measure, SolverChoice};
 
 /// A row.
@@ -114,25 +114,6 @@ pub fn runs_of_a_row(experiment: &Experiment) -> u64 {
     let points =
         experiment.maximise.as_ref().map_or(1, |maximise| maximise.grid.len() as u64 + maximise.points_after_grid());
     points * (experiment.mean_over.len() as u64).max(1)
-}
-
-/// Simulations that an experiment takes at most, with all the points that its curves may get.
-pub(super) fn simulations(experiment: &Experiment, variants: &[Variant]) -> u64 {
-    match experiment.row_source() {
-        RowSource::Search(optimise) => return super::optimise::evaluations(optimise, variants),
-        RowSource::Branches(continuation) => return super::orbit::points(continuation, variants) as u64,
-        RowSource::Basins(starts) => return super::basins::simulations(experiment, starts, variants),
-        RowSource::Cases => {}
-    }
-    let mut of_case = vec![0; experiment.cases.len()];
-    for job in jobs(experiment, variants) {
-        of_case[job.case] += evaluations(experiment, &job);
-    }
-    let added = curves(&experiment.cases, &experiment.refined).into_iter().map(|curve| {
-        let points = u64::from(curve.rule.most).saturating_sub(curve.cases.len() as u64);
-        points * curve.cases.iter().map(|case| of_case[*case]).max().unwrap_or(0)
-    });
-    of_case.iter().sum::<u64>() + added.sum::<u64>()
 }
 
 /// True if the row's measures cannot be computed without a time history.

@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use super::layout::{ASSUMPTIONS, STUDY, folder_of, stem};
 use super::texts::{Bytes, Texts, Unreadable};
 use crate::experiment::{
-    AboutStudy, AssumptionSheet, Assumptions, Cases, Columns, Experiment, ExperimentId, IdError, Problems,
-    parse_assumptions, parse_study, parse_with,
+    AboutStudy, AssumptionSheet, Assumptions, Cases, Columns, Experiment, ExperimentId, IdError, parse_assumptions,
+    parse_study, parse_with,
 };
 use crate::text::utf8::{NotUtf8, decode};
+use crate::yaml::Problems;
 
 /// How the file of an experiment ends.
 const YAML: &str = ".yaml";

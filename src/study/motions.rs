@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::row_in_words::row_in_words;
 use super::shares::{BestMotion, StartShares};
 use crate::dynamics::{MotionKind, Until};
-use crate::experiment::{Experiment, Parameter, RowSource};
+use crate::experiment::{Experiment, RowSource};
 use crate::measure::{Measure, Settings};
 use crate::table::{BASELINE, Table};
-use crate::text::number::quantity;
 use crate::text::words::of_key;
 
 /// What a thousandth changes is read off a figure by nobody, and printed by the study with three digits.
@@ -135,31 +135,4 @@ impl Motions {
     pub fn rows(&self) -> usize {
         self.kinds.values().sum()
     }
-}
-
-/// A row by what is swept: `f′ = 2.5, h′ = 50`; empty where nothing is.
-#[must_use]
-pub fn row_in_words(experiment: &Experiment, table: &Table, row: usize) -> String {
-    described(experiment, table, row, |_| true)
-}
-
-/// A row by those swept parameters that are wanted.
-pub(super) fn described(
-    experiment: &Experiment,
-    table: &Table,
-    row: usize,
-    wanted: impl Fn(Parameter) -> bool,
-) -> String {
-    let parts = experiment.swept.iter().filter(|parameter| wanted(**parameter)).filter_map(|parameter| {
-        let column = of_key(parameter);
-        let name = if parameter.symbol().is_empty() { column.replace('_', " ") } else { parameter.symbol().into() };
-        let value = match (table.floats(&column), table.texts(&column)) {
-            (Some(numbers), _) if !numbers[row].is_nan() => quantity(numbers[row], parameter.unit(), 4),
-            (None, Some(words)) if !words[row].is_empty() => words[row].clone(),
-            _ => return None,
-        };
-        Some(format!("{name} = {value}"))
-    });
-    let direction = table.texts("direction").map(|words| words[row].clone()).filter(|word| !word.is_empty());
-    parts.chain(direction).collect::<Vec<_>>().join(", ")
 }

@@ -6,11 +6,12 @@ use rayon::prelude::*;
 
 use super::left_out::{LeftOutRecord, PredictedErrors};
 use super::load::text;
-use crate::experiment::{AboutStudy, AssumptionSheet, Calibration, Problems, RowLimit, parse_calibration};
+use crate::experiment::{AboutStudy, AssumptionSheet, Calibration, RowLimit, parse_calibration};
 use crate::reference::{Check, KnownTables, Prose, ReferenceFile, Role, parse_reference};
 use crate::study::{
     ASSUMPTIONS, Item, Layout, Loaded, Refused, STUDY, Sensitivity, Summary, Texts, Untried, Used, stem,
 };
+use crate::yaml::Problems;
 
 /// The study: what was read and planned, and the experiments that are up to date and need not be.
 #[derive(Debug)]

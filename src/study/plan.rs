@@ -1,7 +1,6 @@
 //! The plan: what the simulation of each experiment depends on, and whether the table on disk was made from exactly that.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
 
 use serde_json::json;
 
@@ -10,10 +9,9 @@ use super::layout::{ASSUMPTIONS, Layout, record_name, table_name};
 use super::load::Source;
 use super::reason::{Reason, differences};
 use super::record::{NoRecord, Record};
-use super::task::Task;
 use super::variant::{Sensitivity, Variant, variants};
 use crate::dynamics::SOLVER_VERSION;
-use crate::experiment::{AssumptionName, AssumptionSheet, AssumptionValue, RowSource};
+use crate::experiment::{AssumptionName, AssumptionSheet, AssumptionValue};
 use crate::measure::ENSEMBLE_OF_A_VARIANT;
 use crate::table::DEPENDS_ON;
 
@@ -71,13 +69,6 @@ impl Item {
         self.state = state(layout, &self.source, &self.simulation);
     }
 
-    /// What the runner is to do for it.
-    #[must_use]
-    pub fn task<'a>(&'a self, metadata: &'a BTreeMap<String, String>, journal: &'a Path) -> Task<'a> {
-        let Self { source, variants, .. } = self;
-        Task { journal: Some(journal), ..Task::new(&source.experiment, variants, metadata) }
-    }
-
     /// The record of the current table, if there is one.
     #[must_use]
     pub fn record(&self) -> Option<&Record> {
@@ -112,18 +103,6 @@ impl Item {
             ("program", concat!("shotdamp ", env!("CARGO_PKG_VERSION")).to_owned()),
         ];
         pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
-    }
-
-    /// The number of rows, those that refined curves will get not counted, of a branch the most, of random starts one a case, and of simulations at most.
-    #[must_use]
-    pub fn size(&self) -> (usize, u64) {
-        let experiment = &self.source.experiment;
-        let rows = match experiment.row_source() {
-            RowSource::Search(optimise) => super::optimise::rows(optimise, &self.variants),
-            RowSource::Branches(continuation) => super::orbit::points(continuation, &self.variants),
-            RowSource::Cases | RowSource::Basins(_) => super::job::jobs(experiment, &self.variants).len(),
-        };
-        (rows, super::job::simulations(experiment, &self.variants))
     }
 }
 

@@ -5,8 +5,8 @@ use std::fmt;
 use serde_json::Value;
 
 use super::canonical::{Change, canonical};
+use super::failures::Failures;
 use super::inputs::Inputs;
-use super::record::Failures;
 
 /// One reason.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,12 +3,13 @@
 //! The record holds the inputs and not only their hash, so that `status --why` can name the value that changed.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
 use std::path::Path;
-use std::{fmt, fs};
 
 use serde::{Deserialize, Serialize};
 
 use super::canonical::hash;
+use super::failures::Failures;
 use super::inputs::Inputs;
 use super::reason::Reason;
 use crate::atomic::{self, FileError};
@@ -41,25 +42,6 @@ pub struct Record {
     pub left: BTreeSet<String>,
 }
 
-/// The rows of a table that could not be computed.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Failures {
-    /// How many.
-    pub rows: usize,
-    /// The reason of the first.
-    pub first: String,
-}
-
-impl fmt::Display for Failures {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self { rows: 1, first } => write!(f, "1 row failed: {first}"),
-            Self { rows, first } => write!(f, "{rows} rows failed; the first: {first}"),
-        }
-    }
-}
-
 /// Length and hash of a file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -68,15 +50,6 @@ pub struct FileHash {
     pub bytes: u64,
     /// blake3, hexadecimal.
     pub blake3: String,
-}
-
-impl Failures {
-    /// Of the reasons, a row each.
-    pub(super) fn of<R: ToString>(reasons: impl IntoIterator<Item = R>) -> Self {
-        let mut reasons = reasons.into_iter();
-        let Some(first) = reasons.next() else { return Self::default() };
-        Self { rows: 1 + reasons.count(), first: first.to_string() }
-    }
 }
 
 impl FileHash {

@@ -10,8 +10,8 @@
 use rayon::prelude::*;
 
 use super::tabulate::Outcome;
-use super::threshold;
-use crate::experiment::{Assumptions, AxisScale, Case, Curve, Experiment, Parameter, Refinement, curves};
+use super::threshold::{self, number_of};
+use crate::experiment::{Assumptions, AxisScale, Case, Curve, Experiment, Refinement, curves};
 use crate::measure::Measured;
 
 /// Halvings of the first intervals, at most: from 3 rad/s to 0.0002 rad/s.
@@ -151,11 +151,6 @@ fn miss(three: &[Seen], rule: &Refinement) -> f64 {
         if off > noise && share.is_finite() { share } else { 0.0 }
     };
     a.values.iter().zip(&b.values).zip(&c.values).map(of).fold(0.0, f64::max)
-}
-
-/// The value of a parameter; NaN where it is a word.
-pub(super) fn number_of(case: &Case, parameter: Parameter) -> f64 {
-    case.number(parameter).unwrap_or(f64::NAN)
 }
 
 /// The case halfway.

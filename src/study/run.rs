@@ -23,6 +23,7 @@ use super::optimise::run_optimisation;
 use super::orbit::run_branches;
 use super::refine;
 use super::row::outcome;
+use super::size;
 use super::spent::{Meter, Metered};
 use super::tabulate::Outcome;
 use super::task::{Finished, Task};
@@ -67,7 +68,7 @@ pub fn run<T: Send + Sync>(
         swept.into_iter().partition(|&i| !tasks[i].experiment.refined.is_empty());
     let work: Vec<(usize, Work<'_>)> = plain.into_iter().map(|index| (index, Work::new(tasks[index]))).collect();
     let of_divided: u64 = work.iter().map(|(_, one)| one.simulations()).sum();
-    let of_others = whole.iter().chain(&refined).map(|&i| job::simulations(tasks[i].experiment, tasks[i].variants));
+    let of_others = whole.iter().chain(&refined).map(|&i| size::simulations(tasks[i].experiment, tasks[i].variants));
     handler.on_event(&Event::Begun { experiments: tasks.len(), simulations: of_divided + of_others.sum::<u64>() });
     let taken: Vec<OnceLock<T>> = tasks.iter().map(|_| OnceLock::new()).collect();
     let meters: Vec<Meter> = tasks.iter().map(|_| Meter::default()).collect();
@@ -198,7 +199,7 @@ fn run_refined(task: Task<'_>, evaluate: &impl Evaluate, handler: &dyn EventHand
         work.put(row, outcome);
     };
     together(&work).into_par_iter().for_each(|units| one_by_one(&work, &units, evaluate, &counting, put));
-    let left = job::simulations(task.experiment, task.variants).saturating_sub(counting.simulations.into_inner());
+    let left = size::simulations(task.experiment, task.variants).saturating_sub(counting.simulations.into_inner());
     handler.on_event(&Event::Simulated { experiment: &experiment.id, count: left });
     hand_over(&work);
 }

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::motions::{described, row_in_words};
+use super::row_in_words::{described, row_in_words};
 use crate::dynamics::MotionKind;
 use crate::experiment::{BasinColumn, Experiment, Parameter, Rank, RowSource};
 use crate::measure::Measure;

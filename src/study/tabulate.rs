@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::doubt;
+use super::failures::Failures;
 use super::job::Job;
 use super::maximise::Place;
-use super::record::Failures;
 use super::row_failure::RowFailure;
 use super::variant::Variant;
 use crate::experiment::{Experiment, Parameter};

@@ -5,8 +5,8 @@
 
 use std::collections::BTreeMap;
 
+use super::failures::Failures;
 use super::job::Job;
-use super::record::Failures;
 use super::tabulate::{self, Outcome, Row};
 use super::untabulate::Cells;
 use super::variant::Variant;

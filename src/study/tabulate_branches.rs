@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::doubt;
-use super::record::Failures;
+use super::failures::Failures;
 use super::row_failure::RowFailure;
 use super::tabulate::{measured, proof};
 use super::variant::Variant;

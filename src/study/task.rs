@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::event::Left;
+use super::failures::Failures;
 use super::known_rows::KnownRows;
-use super::record::Failures;
+use super::plan::Item;
 use super::shard::Shard;
 use super::spent::Spent;
 use super::variant::Variant;
@@ -44,6 +45,15 @@ impl<'a> Task<'a> {
     pub(super) fn known_whole(&self) -> Option<Finished> {
         let whole = self.known.and_then(KnownRows::whole)?;
         Some(Finished { table: Table { metadata: self.metadata.clone(), ..whole.clone() }, ..Finished::default() })
+    }
+}
+
+impl Item {
+    /// What the runner is to do for it.
+    #[must_use]
+    pub fn task<'a>(&'a self, metadata: &'a BTreeMap<String, String>, journal: &'a Path) -> Task<'a> {
+        let Self { source, variants, .. } = self;
+        Task { journal: Some(journal), ..Task::new(&source.experiment, variants, metadata) }
     }
 }
 

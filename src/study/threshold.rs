@@ -8,7 +8,6 @@ use std::time::Duration;
 
 use cpu_time::ThreadTime;
 
-use super::refine::number_of;
 use crate::dynamics;
 use crate::experiment::{Assumptions, Case, Experiment, Parameter, Threshold, by_strength, curves};
 use crate::measure::rounded;
@@ -140,4 +139,9 @@ fn place(
         Threshold::CeilingGraze => dynamics::ceiling_graze(&system),
     };
     Ok(share.map_err(|_| NotKnown)?.map(|share| share * strength))
+}
+
+/// The value of a parameter; NaN where it is a word.
+pub(super) fn number_of(case: &Case, parameter: Parameter) -> f64 {
+    case.number(parameter).unwrap_or(f64::NAN)
 }

@@ -4,8 +4,9 @@ use super::layout::ASSUMPTIONS;
 use super::open::Study;
 use super::snapshot::Snapshot;
 use super::texts::Texts;
-use crate::experiment::{AssumptionName, AssumptionSheet, Problems, parse_assumptions};
+use crate::experiment::{AssumptionName, AssumptionSheet, parse_assumptions};
 use crate::text::utf8::decode;
+use crate::yaml::Problems;
 
 impl Study {
     /// Warnings, with their places. A file that cannot be read may use what no other does: then there are none.

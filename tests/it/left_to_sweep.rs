@@ -1,7 +1,8 @@
 //! What a scene leaves to a sweep varies, and what it states beside is kept.
 
-use shotdamp::experiment::{Assumptions, Experiment, GapRecipe, Problems, parse_experiment};
+use shotdamp::experiment::{Assumptions, Experiment, GapRecipe, parse_experiment};
 use shotdamp::scene::{Damper, Scene, Surface};
+use shotdamp::yaml::Problems;
 
 use crate::desk::{Desk, THREE_GAPS, shotdamp};
 

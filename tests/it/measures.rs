@@ -1,7 +1,8 @@
 //! Measures say what they are called: of the particle that they name, at the points that count, and undefined where they have no meaning.
 
-use shotdamp::experiment::{Assumptions, Experiment, Problems, load_assumptions, parse_experiment};
+use shotdamp::experiment::{Assumptions, Experiment, load_assumptions, parse_experiment};
 use shotdamp::measure::{ENSEMBLE_OF_A_VARIANT, Evaluated, Particles, Request, Rigour, SolverChoice, evaluate};
+use shotdamp::yaml::Problems;
 
 const BEAM: &str = "cantilever_beam: {length: 1 m, width: 30 mm, thickness: 5 mm, youngs_modulus: 200 GPa, density: 7800 kg/m^3, rayleigh: 5e-5, modes: 3}";
 const MASS: &str = "single_mass: {mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.05}";

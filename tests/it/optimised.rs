@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use shotdamp::dynamics::Proof;
-use shotdamp::experiment::{Experiment, ExperimentId, GapWord, Problems, load_assumptions, parse_experiment};
+use shotdamp::experiment::{Experiment, ExperimentId, GapWord, load_assumptions, parse_experiment};
 use shotdamp::measure::{Evaluated, Measure, Measured, Request, Rigour};
 use shotdamp::optimise::{
     Batch, Bounds, Dense, Genetic, GeneticSettings, Score, Slope, Spacing, Stopping, Wanted, dense, minimise, two_opt,
@@ -18,6 +18,7 @@ use shotdamp::scene::Excitation;
 use shotdamp::study::Study;
 use shotdamp::study::{Array, Engine, Evaluate, Event, EventHandler, IgnoreEvents, RowFailure, Simulation};
 use shotdamp::table::{Data, Table};
+use shotdamp::yaml::Problems;
 
 use crate::desk::{Desk, shotdamp};
 
@@ -307,13 +308,13 @@ fn mistakes_in_an_optimisation_are_told_where_they_stand() {
         let before: Vec<&str> = text.split('‹').next().unwrap().lines().collect();
         let wanted = (before.len(), before.last().unwrap().chars().count() + 1);
         let problems = read(&text.replace(['‹', '›'], "")).expect_err(written);
-        let named = |problem: &shotdamp::experiment::Problem| {
+        let named = |problem: &shotdamp::yaml::Problem| {
             let place = problem.place.map_or((0, 0), |place| (place.line, place.column));
             let whole = format!("{} {}", problem.message, problem.help.clone().unwrap_or_default());
             place == wanted && whole.contains(says)
         };
         // A mapping is told at its first key.
-        let near = |problem: &shotdamp::experiment::Problem| {
+        let near = |problem: &shotdamp::yaml::Problem| {
             let place = problem.place.map_or((0, 0), |place| (place.line, place.column));
             place.0 == wanted.0 && place.1 <= wanted.1 + 1 && problem.message.contains(says)
         };

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use shotdamp::experiment::Problems;
 use shotdamp::reference::{
     FitMeasure, Judged, ReferenceFile, TableState, Tables, Verdict, judge, parse_reference, self_test,
 };
 use shotdamp::table::{Column, Data, Table};
+use shotdamp::yaml::Problems;
 
 use crate::made_up::{numbers, texts};
 

@@ -7,7 +7,7 @@ use crate::desk::{GAP_REFERENCE, shotdamp, simulated};
 /// The mistakes of entries: line, column, message and help.
 fn told(text: &str) -> Vec<String> {
     let Err(problems) = parse_reference("ch3-x", "it.yaml", text) else { return Vec::new() };
-    let one = |one: shotdamp::experiment::Problem| {
+    let one = |one: shotdamp::yaml::Problem| {
         let place = one.place.unwrap();
         let help = one.help.map_or_else(String::new, |help| format!(" | {help}"));
         format!("{}:{} {}{help}", place.line, place.column, one.message)

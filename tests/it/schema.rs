@@ -8,10 +8,11 @@ use std::path::{Path, PathBuf};
 use regex::Regex;
 use serde_json::{Value, json};
 use shotdamp::experiment::{
-    AssumptionSheet, Dimension, assumptions_schema, calibration_schema, experiment_schema, load_assumptions,
-    parse_experiment, parse_quantity, scaffold, structures, study_schema,
+    AssumptionSheet, assumptions_schema, calibration_schema, experiment_schema, load_assumptions, parse_experiment,
+    scaffold, structures, study_schema,
 };
 use shotdamp::reference::{parse_reference, reference_schema};
+use shotdamp::yaml::{Dimension, parse_quantity};
 
 use crate::desk::{GAP, STOP};
 

@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use shotdamp::experiment::{
-    AssumptionName, AssumptionSheet, AssumptionValue, Assumptions, Dimension, Experiment, ExperimentId, GapRecipe,
-    Given, Parameter, ParameterValue, Problems, load_assumptions, load_experiment, parse_assumptions, parse_experiment,
-    parse_number, parse_quantity,
+    AssumptionName, AssumptionSheet, AssumptionValue, Assumptions, Experiment, ExperimentId, GapRecipe, Given,
+    Parameter, ParameterValue, load_assumptions, load_experiment, parse_assumptions, parse_experiment,
 };
 use shotdamp::measure::{Measure, SolverChoice};
 use shotdamp::scene::{ContactDamping, Excitation, PulseShape, Surface};
 use shotdamp::text::words;
+use shotdamp::yaml::{Dimension, Problems, parse_number, parse_quantity};
 
 const GOOD: &str = "\
 title: Limit stop

@@ -1,8 +1,7 @@
 //! The `map` of a figure, its axes and the marks on peaks: what a file may say, and where a mistake in it is told.
 
-use shotdamp::experiment::{
-    AxisScale, Best, Drawing, Experiment, ExperimentId, Problems, load_assumptions, parse_experiment,
-};
+use shotdamp::experiment::{AxisScale, Best, Drawing, Experiment, ExperimentId, load_assumptions, parse_experiment};
+use shotdamp::yaml::Problems;
 
 const EXPERIMENT: &str = "title: Gap and force
 source: {chapter: 3, section: 3.6.7}
@@ -103,7 +102,7 @@ fn mistakes_in_a_map_are_told_where_they_stand() {
     ] {
         let column = figure.chars().position(|c| c == '‹').unwrap() + 1;
         let problems = read(&figure.replace(['‹', '›'], "")).expect_err(&figure);
-        let named = |problem: &shotdamp::experiment::Problem| {
+        let named = |problem: &shotdamp::yaml::Problem| {
             let place = problem.place.map_or((0, 0), |place| (place.line, place.column));
             place == (10, column) && problem.message.contains(says)
         };

@@ -1,6 +1,7 @@
 //! Inputs: what the text of a study states with its place, and places that an assumption lists.
 
-use shotdamp::experiment::{Assumptions, Experiment, Problems, parse_assumptions, parse_experiment};
+use shotdamp::experiment::{Assumptions, Experiment, parse_assumptions, parse_experiment};
+use shotdamp::yaml::Problems;
 
 const STATED: &str = "\
 stated:

@@ -4,10 +4,11 @@
 use std::f64::consts::PI;
 
 use shotdamp::dynamics::{Options, Response, Tick, event_driven, steady_state};
-use shotdamp::experiment::{Assumptions, Experiment, Problems, load_assumptions, parse_experiment};
+use shotdamp::experiment::{Assumptions, Experiment, load_assumptions, parse_experiment};
 use shotdamp::measure::SolverChoice;
 use shotdamp::measure::{Evaluated, Request, Rigour, evaluate};
 use shotdamp::scene::{Point, Scene, Structure, compile};
+use shotdamp::yaml::Problems;
 
 use crate::engine::expected;
 

@@ -2,8 +2,9 @@
 
 use std::fs;
 
-use shotdamp::experiment::{Assumptions, Experiment, Problems, parse_experiment, scaffold};
+use shotdamp::experiment::{Assumptions, Experiment, parse_experiment, scaffold};
 use shotdamp::study::forecast;
+use shotdamp::yaml::Problems;
 
 use crate::desk::{Desk, shotdamp};
 

@@ -42,8 +42,8 @@ impl Matrix {
         Self { order, entries }
     }
 
-    /// Adds `factor` x xᵀ.
-    pub(crate) fn add_square(&mut self, factor: f64, x: &[f64]) {
+    /// Adds `factor` x xᵀ; x has as many numbers as the matrix has rows.
+    pub fn add_square(&mut self, factor: f64, x: &[f64]) {
         for (entries, a) in self.entries.chunks_exact_mut(self.order.max(1)).zip(x) {
             entries.iter_mut().zip(x).for_each(|(entry, b)| *entry += factor * a * b);
         }

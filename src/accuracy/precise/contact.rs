@@ -2,19 +2,9 @@
 
 use super::double::Double;
 use super::matrix::{Square, dot};
-use super::run::{PreciseError, Run};
+use super::run::{End, PreciseError, Run};
 use super::series::{Series, TERMS, Touch, along, away, doubles};
 use crate::dynamics::{Event, EventKind, Face, Law};
-
-/// What ends a phase.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum End {
-    Meets(bool),
-    Leaves,
-    HitsStop,
-    LetGo,
-    Squeezed,
-}
 
 impl Run<'_> {
     /// u = y − φ·q − offset.

@@ -2,7 +2,6 @@
 
 use std::time::{Duration, Instant};
 
-use super::contact::End;
 use super::double::Double;
 use super::matrix::{Square, dot};
 use super::power::{scaled, sin_cos, square};
@@ -12,6 +11,16 @@ use crate::dynamics::{Contact, CycleRates, HybridSystem, Law, Observed, Options,
 
 /// Events at one instant before the run is given up.
 const MOST_AT_AN_INSTANT: u32 = 64;
+
+/// What ends a phase.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum End {
+    Meets(bool),
+    Leaves,
+    HitsStop,
+    LetGo,
+    Squeezed,
+}
 
 /// Why there is no reference of this kind.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -12,8 +12,8 @@ use serde::{Deserialize, Serialize};
 use super::parts::RecipeError;
 use super::slot::Slot;
 use crate::experiment::assumption_sheet::{ASSUMPTIONS, AssumptionSheet};
-use crate::experiment::word::{from_word, word_of};
 use crate::scene::{Curve, FieldValue, Take, whole};
+use crate::yaml::word::{from_word, word_of};
 
 /// The name of an assumption, as the assumptions file declares it.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

@@ -7,9 +7,9 @@ use super::parts::{
     ContactDampingRatio, ContactDampingRecipe, DamperRecipe, ExcitationKind, Filling, FloorStiffness, GapRecipe,
     MassReading, MassRecipe, Part, Recipe, RecipeError, StiffnessRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe,
 };
-use crate::experiment::quantity::Dimension;
-use crate::experiment::word::words;
 use crate::scene::{PulseShape, whole};
+use crate::yaml::Dimension;
+use crate::yaml::word::words;
 
 /// What a sweep may vary. The earlier one varies slower.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

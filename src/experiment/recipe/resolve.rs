@@ -18,7 +18,7 @@ use super::slot::Slot;
 use crate::measure::{Needs, Subject};
 use crate::scene::{
     ContactDamping, ContactEnd, Damper, Kind, LimitStop, Observation, Point, Scene, Start, Structure, Surface, Take,
-    Walls, add_square, normal_modes,
+    Walls, normal_modes,
 };
 
 /// What the parts of a recipe refer to.
@@ -217,7 +217,7 @@ impl Base<'_> {
         let matrices = self.structure.model().matrices();
         let mut mass = matrices.mass;
         for damper in placed {
-            add_square(&mut mass, damper.particle_mass + damper.enclosure_mass, &places.shape(damper.at));
+            mass.add_square(damper.particle_mass + damper.enclosure_mass, &places.shape(damper.at));
         }
         normal_modes(&mass, &matrices.stiffness).first().map_or_else(|| self.natural(), |mode| mode.frequency)
     }

@@ -6,7 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::experiment::assumption_sheet::{Quantity, Takes};
-use crate::experiment::quantity::Dimension;
+use crate::yaml::Dimension;
 
 macro_rules! slots {
     ($($Slot:ident: $quantity:expr, $readings:expr, $about:literal;)*) => {

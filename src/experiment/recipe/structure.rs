@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::given::{Count, Given, Inputs};
 use super::parameter::Parameter;
 use super::parts::RecipeError;
-use crate::experiment::word::word_of;
 use crate::scene::{FieldValue, Form, Kind, Structure, Values, whole};
+use crate::yaml::word::word_of;
 
 /// A structure as an experiment names it; in JSON as in YAML, `{kind: {key: value}}`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

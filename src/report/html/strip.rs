@@ -1,10 +1,9 @@
 //! The verdict strip: one cell for each entry, each a link to it.
 
 use super::super::chapter::by_chapter;
-use super::super::comparison::name;
 use super::super::markdown::html;
 use super::super::tally::{VERDICTS, mark, meaning};
-use super::super::view::ExperimentView;
+use super::super::view::{ExperimentView, name};
 use super::links::marked;
 use crate::experiment::AboutStudy;
 use crate::reference::{Judged, Role};

@@ -1,10 +1,9 @@
 //! All entries as a table; the script sorts and filters its rows.
 
 use super::super::chapter::by_chapter;
-use super::super::comparison::name;
 use super::super::markdown::{html, one_line};
 use super::super::tally::{VERDICTS, mark, role};
-use super::super::view::ExperimentView;
+use super::super::view::{ExperimentView, name};
 use super::links::marked;
 use super::markdown::{Here, inline};
 use crate::reference::Judged;

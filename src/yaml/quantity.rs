@@ -38,7 +38,7 @@ pub enum Dimension {
 }
 
 /// What is said of a comma in a number.
-pub(super) const NO_COMMA: &str = "write a decimal point, `30.5`, and thousands without a separator, `30000`";
+pub(crate) const NO_COMMA: &str = "write a decimal point, `30.5`, and thousands without a separator, `30000`";
 
 /// Why a text is not the quantity that is wanted. The message says what is wrong, [`QuantityError::help`] what would be
 /// right.
@@ -228,7 +228,7 @@ pub fn parse_quantity(text: &str, wanted: Dimension) -> Result<f64, QuantityErro
 
 /// Why numbers of one unit cannot be shown in another.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub(super) enum ConversionError {
+pub(crate) enum ConversionError {
     /// A symbol that is no unit.
     #[error("`{0}` is not a unit that is known here")]
     Unknown(String),
@@ -243,7 +243,7 @@ pub(super) enum ConversionError {
 }
 
 /// What one `unit` is in `of`: 0.001 for mm in m, 2π for Hz in rad/s.
-pub(super) fn worth(unit: &str, of: &str) -> Result<f64, ConversionError> {
+pub(crate) fn worth(unit: &str, of: &str) -> Result<f64, ConversionError> {
     let other_kind = || ConversionError::OtherKind { unit: unit.into(), of: of.into() };
     let wanted = parse_unit(unit).map_err(|_| ConversionError::Unknown(unit.into()))?;
     let Unit { powers, ten } = parse_unit(of).map_err(|_| other_kind())?;
@@ -272,7 +272,7 @@ pub fn parse_number(text: &str) -> Result<f64, QuantityError> {
 }
 
 /// Reads a number alone, or with a unit: in `own` where that is known, which may be none, and in SI otherwise.
-pub(super) fn parse_in(text: &str, own: Option<&str>) -> Result<f64, QuantityError> {
+pub(crate) fn parse_in(text: &str, own: Option<&str>) -> Result<f64, QuantityError> {
     let text = text.trim();
     let (number, unit) = split_number(text)?;
     if unit.is_empty() || own == Some(unit) {
@@ -299,21 +299,21 @@ pub(super) fn parse_in(text: &str, own: Option<&str>) -> Result<f64, QuantityErr
 
 /// A number with whatever unit it has, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Amount {
+pub(crate) struct Amount {
     value: f64,
     powers: Powers,
 }
 
 impl Amount {
     /// The same but for what the last digits of a written number round away.
-    pub(super) fn is(&self, other: &Self) -> bool {
+    pub(crate) fn is(&self, other: &Self) -> bool {
         let scale = self.value.abs().max(other.value.abs());
         self.powers == other.powers && (self.value - other.value).abs() <= 1e-9 * scale
     }
 }
 
 /// Reads a number with any unit; a noun behind a count (`25 cycles`) is none. Nothing if the text is no number.
-pub(super) fn parse_amount(text: &str) -> Option<Amount> {
+pub(crate) fn parse_amount(text: &str) -> Option<Amount> {
     let (number, unit) = split_number(text.trim()).ok()?;
     let Unit { powers, ten } = parse_unit(unit).ok().filter(|_| !unit.is_empty()).unwrap_or_default();
     let value = number.value(ten, text).ok()?;
@@ -341,7 +341,7 @@ impl Decimal<'_> {
 }
 
 /// `0.7 %` as a fraction, with the bits of 0.007.
-pub(super) fn parse_percent(text: &str) -> Option<f64> {
+pub(crate) fn parse_percent(text: &str) -> Option<f64> {
     let text = text.trim();
     let (number, unit) = split_number(text).ok()?;
     (unit.trim() == "%").then(|| number.value(-2, text).ok()).flatten()

@@ -1,15 +1,13 @@
-//! The assumptions file.
+//! JSON Schema of the assumptions file, and of an assumption where one may stand.
 
 use serde_json::{Value, json};
 
-use super::of_file;
-use super::parts::{Object, any_of, form, list, one_of_words, ratio, text};
-use crate::experiment::assumption_reader::{DEFAULTS, describe_defaults, read_curve, read_entry};
-use crate::experiment::assumption_sheet::{AssumptionSheet, Takes};
-use crate::experiment::at::{Definitions, Sketch};
-use crate::experiment::diagnostic::Place;
-use crate::experiment::stated::{STATED, read_chapters};
+use super::assumption_reader::{DEFAULTS, describe_defaults, read_curve, read_entry};
+use super::assumption_sheet::{AssumptionSheet, Takes};
+use super::stated::{STATED, read_chapters};
 use crate::text::words::of_key;
+use crate::yaml::schema::{Object, any_of, form, list, one_of_words, ratio, text};
+use crate::yaml::{Definitions, Place, Sketch, of_file};
 
 /// JSON Schema of the assumptions file.
 #[must_use]
@@ -27,7 +25,7 @@ const OF_DEFAULTS: &str =
     "Cycles of a run, and which assumption stands where an experiment says assumed or leaves a slot out";
 
 /// A number with or without unit, a reading, or a curve.
-pub(in crate::experiment) fn value() -> Value {
+pub(super) fn value() -> Value {
     any_of(
         "A value of its kind",
         vec![
@@ -45,7 +43,7 @@ fn places() -> Value {
 }
 
 /// `{assumed: NAME}` for a place that takes this, with the names of the study's assumptions that fit there.
-pub(in crate::experiment) fn assumed(place: &Sketch<'_>, sheet: &AssumptionSheet, takes: Takes<'_>) -> Value {
+pub(super) fn assumed(place: &Sketch<'_>, sheet: &AssumptionSheet, takes: Takes<'_>) -> Value {
     const ABOUT: &str = "By an assumption";
     place.shared(&definition(takes), ABOUT, |at| {
         at.form(|_, _| None::<()>, |_| form("assumed", ABOUT, names(sheet, takes)))
@@ -61,7 +59,7 @@ fn names(sheet: &AssumptionSheet, takes: Takes<'_>) -> Value {
 }
 
 /// Any of them.
-pub(in crate::experiment) fn any(sheet: &AssumptionSheet) -> Value {
+pub(super) fn any(sheet: &AssumptionSheet) -> Value {
     let names: Vec<&str> = sheet.iter().map(|(name, _)| name.as_str()).collect();
     if names.is_empty() { text("An assumption") } else { one_of_words("An assumption", &names) }
 }

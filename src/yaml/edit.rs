@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::diagnostic::Findings;
-use super::yaml::{Entry, Node, Value, read_tree};
+use super::node::{Entry, Node, Value, read_tree};
 
 /// Longest line that prose is broken into, characters.
 const WIDTH: usize = 118;

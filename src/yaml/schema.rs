@@ -3,13 +3,13 @@
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value, json};
 
-use crate::experiment::quantity::Dimension;
-use crate::experiment::word::words;
+use super::quantity::Dimension;
+use super::word::words;
 
 /// A number as people write it.
-pub(in crate::experiment) const NUMBER: &str = r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?";
+pub(crate) const NUMBER: &str = r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?";
 /// Prefixes of units.
-pub(in crate::experiment) const PREFIX: &str = "[nuµμmckMG]?";
+pub(crate) const PREFIX: &str = "[nuµμmckMG]?";
 
 /// A mapping: its keys, which must be there, and which exclude each other.
 pub(crate) struct Object {

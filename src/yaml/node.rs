@@ -44,10 +44,10 @@ pub(crate) struct Entry {
 }
 
 /// Longest text, in bytes.
-pub(super) const LONGEST: usize = 1 << 20;
+pub(crate) const LONGEST: usize = 1 << 20;
 
 /// What is wrong with a longer one.
-pub(super) fn too_long(bytes: u64) -> String {
+pub(crate) fn too_long(bytes: u64) -> String {
     format!("has {} KiB; at most {} KiB are read", bytes.div_ceil(1024), LONGEST >> 10)
 }
 
@@ -57,7 +57,7 @@ const MOST_KEYS: usize = 1000;
 type Located<'t> = (Event<'t>, Span);
 
 /// Reads the one document of `text`; all that is no plain YAML is reported.
-pub(super) fn read_tree(text: &str, findings: &Findings) -> Option<Node> {
+pub(crate) fn read_tree(text: &str, findings: &Findings) -> Option<Node> {
     if text.len() > LONGEST {
         return findings.wrong(Span::default(), format!("the file {}", too_long(text.len() as u64)));
     }

@@ -60,7 +60,7 @@ pub struct Problems {
 
 impl Problems {
     /// A file that could not be read at all.
-    pub(super) fn unreadable(file: &str, message: String, help: Option<String>) -> Self {
+    pub(crate) fn unreadable(file: &str, message: String, help: Option<String>) -> Self {
         Self {
             file: file.into(),
             list: vec![Problem { severity: Severity::Error, message, help, place: None }],
@@ -77,7 +77,7 @@ impl Problems {
     }
 
     /// What is hardly meant in a file that can be used.
-    pub(super) fn warnings(
+    pub(crate) fn warnings(
         file: &str,
         text: &str,
         list: impl Iterator<Item = (Place, String, String)>,
@@ -207,9 +207,16 @@ const MOST_TOLD: usize = 100;
 #[derive(Debug, Default)]
 pub(crate) struct Findings {
     list: RefCell<Vec<(Span, String, Option<String>)>>,
+    /// What a sweep may vary, for whom marks another key; empty in files without a sweep.
+    pub varied: &'static [&'static str],
 }
 
 impl Findings {
+    /// Those of a file whose sweep may vary these.
+    pub fn beside_sweep(varied: &'static [&'static str]) -> Self {
+        Self { varied, ..Self::default() }
+    }
+
     /// Reports a problem; returns `None` so that a reader can end with it.
     pub fn report<T>(&self, at: Span, message: impl Into<String>, help: Option<String>) -> Option<T> {
         if !self.is_full() {

@@ -5,13 +5,13 @@ use serde::de::{DeserializeOwned, Deserializer, IntoDeserializer, Visitor};
 use serde::{Serialize, forward_to_deserialize_any};
 
 /// The variant that `word` names.
-pub(super) fn from_word<T: DeserializeOwned>(word: &str) -> Option<T> {
+pub(crate) fn from_word<T: DeserializeOwned>(word: &str) -> Option<T> {
     let deserializer: StrDeserializer<'_, Error> = word.into_deserializer();
     T::deserialize(deserializer).ok()
 }
 
 /// The word for a variant without fields.
-pub(super) fn word_of<T: Serialize>(variant: T) -> String {
+pub(crate) fn word_of<T: Serialize>(variant: T) -> String {
     match serde_json::to_value(variant) {
         Ok(serde_json::Value::String(word)) => word,
         // Only enums without fields come here; anything else would show as what it is.
@@ -20,7 +20,7 @@ pub(super) fn word_of<T: Serialize>(variant: T) -> String {
 }
 
 /// All words of an enum without fields, in the order of its declaration.
-pub(super) fn words<T: DeserializeOwned>() -> &'static [&'static str] {
+pub(crate) fn words<T: DeserializeOwned>() -> &'static [&'static str] {
     let mut words: &'static [&'static str] = &[];
     // The deserializer only looks at the names that serde passes in and then declines.
     let _ = T::deserialize(NamesOnly(&mut words));

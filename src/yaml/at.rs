@@ -13,10 +13,10 @@ use serde_json::{Map, Value as Schema, json};
 use super::choice::Choice;
 use super::diagnostic::{Findings, Span};
 use super::keys::{Key, Keys};
+use super::node::{Entry, Node, Value};
 use super::quantity::Dimension;
 use super::reader;
-use super::schema::parts::{self, Object};
-use super::yaml::{Entry, Node, Value};
+use super::schema::{self, Object};
 
 /// A place that is read, or described.
 #[derive(Clone, Copy)]
@@ -51,7 +51,7 @@ impl<'t> Sketch<'t> {
     /// What was added; nothing if nothing was.
     fn schema(self) -> Option<Schema> {
         let mut all = self.alternatives.into_inner();
-        if all.len() > 1 { Some(parts::any_of(self.about, all)) } else { all.pop() }
+        if all.len() > 1 { Some(schema::any_of(self.about, all)) } else { all.pop() }
     }
 
     /// The same of a part of this place.
@@ -76,7 +76,7 @@ impl<'t> Sketch<'t> {
             let schema = self.part(about, read);
             self.definitions.borrow_mut().insert(name.into(), schema);
         }
-        parts::reference(name)
+        schema::reference(name)
     }
 }
 
@@ -192,7 +192,7 @@ impl<'t> At<'t> {
         match self {
             Self::Node(node, _) => matches!(&node.value, Value::Scalar(text) if text == word),
             Self::Sketch(sketch) => {
-                sketch.add(parts::word(word));
+                sketch.add(schema::word(word));
                 false
             }
         }
@@ -202,7 +202,7 @@ impl<'t> At<'t> {
     pub fn quantity(self, wanted: Dimension) -> Option<f64> {
         self.form(
             |node, findings| reader::quantity(node, wanted, findings),
-            |sketch| parts::quantity(sketch.about, wanted),
+            |sketch| schema::quantity(sketch.about, wanted),
         )
     }
 
@@ -220,14 +220,14 @@ impl<'t> At<'t> {
 
     /// A dimensionless number.
     pub fn number(self) -> Option<f64> {
-        self.form(reader::number, |sketch| parts::number(sketch.about))
+        self.form(reader::number, |sketch| schema::number(sketch.about))
     }
 
     /// A number alone, or with a unit: in `unit` where that is known, and in SI otherwise.
     pub fn number_in(self, unit: Option<&str>) -> Option<f64> {
         self.form(
             |node, findings| reader::number_in(node, unit, findings),
-            |sketch| parts::number_with_unit(sketch.about, unit),
+            |sketch| schema::number_with_unit(sketch.about, unit),
         )
     }
 
@@ -249,13 +249,13 @@ impl<'t> At<'t> {
                 fraction if (0.0..1.0).contains(&fraction) => Some(fraction),
                 _ => findings.wrong(node.span, "a fraction is wanted, from 0 to less than 1"),
             },
-            |sketch| parts::fraction(sketch.about),
+            |sketch| schema::fraction(sketch.about),
         )
     }
 
     /// A dimensionless number that is not negative.
     pub fn ratio(self) -> Option<f64> {
-        self.form(reader::ratio, |sketch| parts::ratio(sketch.about))
+        self.form(reader::ratio, |sketch| schema::ratio(sketch.about))
     }
 
     /// A share, 0 to 1; `too_large` says what it is a share of.
@@ -265,7 +265,7 @@ impl<'t> At<'t> {
                 share if share <= 1.0 => Some(share),
                 _ => findings.wrong(node.span, too_large),
             },
-            |sketch| parts::between(sketch.about, 0.0, 1.0),
+            |sketch| schema::between(sketch.about, 0.0, 1.0),
         )
     }
 
@@ -276,7 +276,7 @@ impl<'t> At<'t> {
                 value if (low..=high).contains(&value) => Some(value),
                 _ => findings.wrong(node.span, otherwise),
             },
-            |sketch| parts::between(sketch.about, low, high),
+            |sketch| schema::between(sketch.about, low, high),
         )
     }
 
@@ -292,30 +292,30 @@ impl<'t> At<'t> {
                 count if count < least => findings.wrong(node.span, too_few),
                 count => Some(count),
             },
-            |sketch| parts::count(sketch.about, noun, least, most),
+            |sketch| schema::count(sketch.about, noun, least, most),
         )
     }
 
     /// A text, not empty.
     pub fn text(self) -> Option<String> {
-        self.form(reader::text, |sketch| parts::text(sketch.about))
+        self.form(reader::text, |sketch| schema::text(sketch.about))
     }
 
     /// `true` or `false`.
     pub fn boolean(self) -> Option<bool> {
-        self.form(reader::boolean, |sketch| parts::boolean(sketch.about))
+        self.form(reader::boolean, |sketch| schema::boolean(sketch.about))
     }
 
     /// One of the words of an enum.
     pub fn word<T: DeserializeOwned>(self, role: &str) -> Option<T> {
-        self.form(|node, findings| reader::word(node, role, findings), |sketch| parts::words_of::<T>(sketch.about))
+        self.form(|node, findings| reader::word(node, role, findings), |sketch| schema::words_of::<T>(sketch.about))
     }
 
     /// Each item of a list.
     pub fn list<T>(self, read: impl Fn(At<'_>) -> Option<T>) -> Option<Vec<T>> {
         self.form(
             |node, findings| reader::list(node, findings, |node| read(At::Node(node, findings))),
-            |sketch| parts::list(sketch.about, sketch.part(sketch.about, &read)),
+            |sketch| schema::list(sketch.about, sketch.part(sketch.about, &read)),
         )
     }
 
@@ -334,7 +334,7 @@ impl<'t> At<'t> {
     pub fn one_or_more<T>(self, read: impl Fn(At<'_>) -> Option<T>) -> Option<Vec<T>> {
         self.form(
             |node, findings| reader::one_or_more(node, findings, |node| read(At::Node(node, findings))),
-            |sketch| parts::one_or_more(sketch.about, sketch.part(sketch.about, &read)),
+            |sketch| schema::one_or_more(sketch.about, sketch.part(sketch.about, &read)),
         )
     }
 
@@ -423,7 +423,7 @@ impl<'t> At<'t> {
                     forms.extend(content.schema().map(|content| (*name, content)));
                 }
                 if !words.is_empty() {
-                    sketch.add(parts::one_of_words(sketch.about, &words));
+                    sketch.add(schema::one_of_words(sketch.about, &words));
                 }
                 if !forms.is_empty() {
                     sketch.add(Object::new(sketch.about).exactly_one(forms).schema());

@@ -5,13 +5,12 @@
 use serde::de::DeserializeOwned;
 
 use super::diagnostic::{Findings, Span};
+use super::node::{Node, Value};
 use super::quantity::{Dimension, NO_COMMA, QuantityError, parse_in, parse_number, parse_quantity};
-use super::recipe::Parameter;
 use super::word::{closest, did_you_mean, from_word, words};
-use super::yaml::{Node, Value};
 
 /// Reports a word that is none of the known ones.
-pub(super) fn unknown<T>(
+pub(crate) fn unknown<T>(
     findings: &Findings,
     at: Span,
     what: &str,
@@ -26,7 +25,7 @@ pub(super) fn unknown<T>(
 }
 
 /// Reports a word that is none of an enum's.
-pub(super) fn no_such<T>(findings: &Findings, at: Span, role: &str, given: &str, known: &[&str]) -> Option<T> {
+pub(crate) fn no_such<T>(findings: &Findings, at: Span, role: &str, given: &str, known: &[&str]) -> Option<T> {
     let article = if role.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
     findings.report(at, format!("`{given}` is not {article} {role}"), suggestion(findings, given, known))
 }
@@ -41,7 +40,7 @@ fn suggestion(findings: &Findings, given: &str, known: &[&str]) -> Option<String
 }
 
 /// What a node is, in words.
-pub(super) fn kind(node: &Node) -> &'static str {
+pub(crate) fn kind(node: &Node) -> &'static str {
     match node.value {
         Value::Nothing => "nothing",
         Value::Scalar(_) => "a single value",
@@ -51,7 +50,7 @@ pub(super) fn kind(node: &Node) -> &'static str {
 }
 
 /// The text of a single value.
-pub(super) fn scalar<'t>(node: &'t Node, findings: &Findings) -> Option<&'t str> {
+pub(crate) fn scalar<'t>(node: &'t Node, findings: &Findings) -> Option<&'t str> {
     match &node.value {
         Value::Scalar(text) => Some(text),
         Value::Mapping(entries) if matches!(entries.as_slice(), [entry] if entry.key == "assumed") => {
@@ -68,7 +67,7 @@ pub(super) fn scalar<'t>(node: &'t Node, findings: &Findings) -> Option<&'t str>
 }
 
 /// A text, not empty.
-pub(super) fn text(node: &Node, findings: &Findings) -> Option<String> {
+pub(crate) fn text(node: &Node, findings: &Findings) -> Option<String> {
     let text = scalar(node, findings)?.trim();
     if text.is_empty() {
         return findings.wrong(node.span, "a text is wanted here");
@@ -80,7 +79,7 @@ pub(super) fn text(node: &Node, findings: &Findings) -> Option<String> {
 }
 
 /// `true` or `false`.
-pub(super) fn boolean(node: &Node, findings: &Findings) -> Option<bool> {
+pub(crate) fn boolean(node: &Node, findings: &Findings) -> Option<bool> {
     match scalar(node, findings)? {
         "true" => Some(true),
         "false" => Some(false),
@@ -95,8 +94,8 @@ fn no_assumption<T>(findings: &Findings, at: Span) -> Option<T> {
 
 fn measured(node: &Node, findings: &Findings, parsed: Result<f64, QuantityError>) -> Option<f64> {
     if node.value.is_swept() {
-        let parameters = words::<Parameter>().iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
-        let help = Some(format!("give it a value here; a sweep varies {parameters}"));
+        let varied = findings.varied.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
+        let help = Some(format!("give it a value here; a sweep varies {varied}"));
         return findings.report(node.span, "no sweep varies this key", help);
     }
     if matches!(&node.value, Value::Scalar(word) if word == "assumed") {
@@ -106,34 +105,34 @@ fn measured(node: &Node, findings: &Findings, parsed: Result<f64, QuantityError>
 }
 
 /// A quantity in SI.
-pub(super) fn quantity(node: &Node, wanted: Dimension, findings: &Findings) -> Option<f64> {
+pub(crate) fn quantity(node: &Node, wanted: Dimension, findings: &Findings) -> Option<f64> {
     measured(node, findings, parse_quantity(scalar(node, findings)?, wanted))
 }
 
 /// A number alone, or with a unit: in `unit` where that is known, and in SI otherwise.
-pub(super) fn number_in(node: &Node, unit: Option<&str>, findings: &Findings) -> Option<f64> {
+pub(crate) fn number_in(node: &Node, unit: Option<&str>, findings: &Findings) -> Option<f64> {
     measured(node, findings, parse_in(scalar(node, findings)?, unit))
 }
 
 /// A quantity above zero.
-pub(super) fn above_zero(node: &Node, wanted: Dimension, findings: &Findings) -> Option<f64> {
+pub(crate) fn above_zero(node: &Node, wanted: Dimension, findings: &Findings) -> Option<f64> {
     let value = quantity(node, wanted, findings)?;
     if value > 0.0 { Some(value) } else { findings.wrong(node.span, format!("{} above zero is wanted", wanted.name())) }
 }
 
 /// A dimensionless number.
-pub(super) fn number(node: &Node, findings: &Findings) -> Option<f64> {
+pub(crate) fn number(node: &Node, findings: &Findings) -> Option<f64> {
     measured(node, findings, parse_number(scalar(node, findings)?))
 }
 
 /// A dimensionless number that is not negative.
-pub(super) fn ratio(node: &Node, findings: &Findings) -> Option<f64> {
+pub(crate) fn ratio(node: &Node, findings: &Findings) -> Option<f64> {
     let value = number(node, findings)?;
     if value >= 0.0 { Some(value) } else { findings.wrong(node.span, "this ratio cannot be negative") }
 }
 
 /// A whole number up to `most`, with or without its noun: `25` or `25 cycles`.
-pub(super) fn count(node: &Node, noun: &str, most: u32, findings: &Findings) -> Option<u32> {
+pub(crate) fn count(node: &Node, noun: &str, most: u32, findings: &Findings) -> Option<u32> {
     let text = scalar(node, findings)?.trim();
     let end = text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
     let (digits, rest) = text.split_at(end);
@@ -154,13 +153,13 @@ fn or_things(noun: &str) -> &str {
 }
 
 /// One of the words of an enum.
-pub(super) fn word<T: DeserializeOwned>(node: &Node, role: &str, findings: &Findings) -> Option<T> {
+pub(crate) fn word<T: DeserializeOwned>(node: &Node, role: &str, findings: &Findings) -> Option<T> {
     let text = scalar(node, findings)?;
     from_word(text).or_else(|| no_such(findings, node.span, role, text, words::<T>()))
 }
 
 /// Each item of a list.
-pub(super) fn list<'t, T>(node: &'t Node, findings: &Findings, read: impl Fn(&'t Node) -> Option<T>) -> Option<Vec<T>> {
+pub(crate) fn list<'t, T>(node: &'t Node, findings: &Findings, read: impl Fn(&'t Node) -> Option<T>) -> Option<Vec<T>> {
     match &node.value {
         Value::Sequence(items) if items.is_empty() => findings.wrong(node.span, "this list is empty"),
         Value::Sequence(items) => all(items.iter().map(read)),
@@ -173,7 +172,7 @@ pub(super) fn list<'t, T>(node: &'t Node, findings: &Findings, read: impl Fn(&'t
 }
 
 /// A list, or one thing that stands for a list of one.
-pub(super) fn one_or_more<'t, T>(
+pub(crate) fn one_or_more<'t, T>(
     node: &'t Node,
     findings: &Findings,
     read: impl Fn(&'t Node) -> Option<T>,
@@ -185,7 +184,7 @@ pub(super) fn one_or_more<'t, T>(
 }
 
 /// All values, or `None` if one was reported; unlike `collect`, it does not stop at the first.
-pub(super) fn all<T>(values: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
+pub(crate) fn all<T>(values: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
     let values: Vec<_> = values.collect();
     values.into_iter().collect()
 }

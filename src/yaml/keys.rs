@@ -6,10 +6,10 @@ use serde_json::{Value as Schema, json};
 
 use super::at::{At, Sketch};
 use super::diagnostic::{Findings, Span};
+use super::node::{Entry, Node, Value};
 use super::reader::{all, kind, unknown};
-use super::schema::parts::Object;
+use super::schema::Object;
 use super::word::closest;
-use super::yaml::{Entry, Node, Value};
 
 /// A mapping. The keys that a reader asks for are the keys that exist.
 pub(crate) enum Keys<'t> {
