@@ -15,11 +15,10 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::load::parsed;
 use crate::yaml::reader::{no_such, word};
 use crate::yaml::schema::words_of;
 use crate::yaml::word::words;
-use crate::yaml::{At, Problems, Span, Value, described};
+use crate::yaml::{At, Problems, Span, Value, described, parsed};
 
 /// What a study says of itself; every part may be absent.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]

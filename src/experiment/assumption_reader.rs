@@ -2,19 +2,21 @@
 
 use std::sync::Arc;
 
-use serde_json::json;
+use serde_json::{Value as Schema, json};
 
-use super::assumption_sheet::{ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Quantity, Takes};
-use super::assumptions_schema;
-use super::recipe::{AssumptionName, AssumptionValue, Slot};
-use super::scene::names_assumption;
-use super::stated::{STATED, read_chapters};
+use super::recipe::{
+    ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionName, AssumptionSheet, AssumptionValue, Cycles, Quantity,
+    Slot, Takes,
+};
+use super::stated::{STATED, names_assumption, read_chapters};
 use crate::dynamics::Spline;
 use crate::scene::{Curve, KINDS, Kind};
 use crate::text::number::significant;
 use crate::yaml::reader::{above_zero, count, list, no_such, ratio, scalar, unknown};
 use crate::yaml::word::{from_word, words};
-use crate::yaml::{At, Dimension, Entry, Findings, Key, Node, Place, Problems, Value, place, read_tree, schema};
+use crate::yaml::{
+    At, Definitions, Dimension, Entry, Findings, Key, Node, Place, Problems, Sketch, Value, place, read_tree, schema,
+};
 
 /// Reads the assumptions file from its text; `file` only names it in messages.
 ///
@@ -168,15 +170,14 @@ pub(super) fn read_entry(at: At<'_>, place: Place) -> Option<AssumptionEntry> {
         _ => None,
     };
     let value = |node: &Node, findings: &Findings| read_value(node, kind.as_ref()?, findings);
-    let in_force = keys.required("value", "A value of its kind", |at| at.form(value, |_| assumptions_schema::value()));
+    let in_force = keys.required("value", "A value of its kind", |at| at.form(value, |_| any_value()));
     let reason = keys.required("reason", "Why this value", |at| at.text());
     let other = |node: &Node, findings: &Findings| {
         let other = value(node, findings)?;
         in_force.as_ref().is_none_or(|one| alike(one, &other, node, findings)).then_some(other)
     };
-    let range = keys.optional("range", "Other values that could be defended", |at| {
-        at.list(|at| at.form(other, |_| assumptions_schema::value()))
-    });
+    let range = keys
+        .optional("range", "Other values that could be defended", |at| at.list(|at| at.form(other, |_| any_value())));
     let fitted_to = "Entries that the value was chosen by, experiment/entry";
     let fitted_to = keys.optional("fitted_to", fitted_to, |at| at.list(|at| at.text()));
     keys.rule(|| json!({"anyOf": [{"required": ["quantity"]}, {"required": ["readings"]}]}));
@@ -317,4 +318,31 @@ pub(super) fn read_curve(at: At<'_>) -> Option<Curve> {
         significant(x, 2)
     );
     at.report_at(dampings[after].1, message, Some("add a point there".into()))
+}
+
+impl AssumptionSheet {
+    /// A value of this assumption.
+    pub(super) fn value_of(&self, name: &AssumptionName, node: &Node, findings: &Findings) -> Option<AssumptionValue> {
+        let entry = self.get(name)?;
+        let value = read_value(node, &entry.kind, findings)?;
+        alike(&entry.value, &value, node, findings).then_some(value)
+    }
+}
+
+/// A number with or without unit, a reading, or a curve.
+pub(super) fn any_value() -> Schema {
+    schema::any_of(
+        "A value of its kind",
+        vec![
+            json!({"type": ["number", "string"]}),
+            Sketch::of("A curve", &Definitions::default(), read_curve),
+            places(),
+        ],
+    )
+}
+
+/// Shares of the sides.
+fn places() -> Schema {
+    let share = || schema::ratio("A share of the side");
+    schema::list("Places", schema::any_of("A place", vec![share(), schema::list("One coordinate a side", share())]))
 }

@@ -23,16 +23,15 @@ use std::collections::BTreeSet;
 use serde::Deserialize;
 use serde_json::{Value as Schema, json};
 
-use super::assumption_sheet::{AssumptionSheet, Quantity};
-use super::assumptions_schema;
+use super::assumed_schema;
+use super::assumption_reader::any_value;
+use super::calibration_input::{CalibrationInput, Tried};
 use super::finding::FindingText;
-use super::load::parsed;
-use super::recipe::{AssumptionName, AssumptionValue};
+use super::recipe::{AssumptionName, AssumptionSheet, AssumptionValue, Quantity};
 use super::solver::read_solver;
-use crate::measure::SolverChoice;
 use crate::yaml::reader::{all, no_such};
 use crate::yaml::schema::{any_of, list};
-use crate::yaml::{At, Findings, Keys, Node, Problems, Span, Value, described};
+use crate::yaml::{At, Findings, Keys, Node, Problems, Span, Value, described, parsed};
 
 /// Most combinations of values of a full grid: each is a run of every experiment concerned.
 const MOST_COMBINATIONS: usize = 10_000;
@@ -92,60 +91,6 @@ pub enum Residual {
     Relative,
     /// ln(s/d): twice and half as much are equally far off.
     Logarithmic,
-}
-
-/// A free input.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CalibrationInput {
-    /// As the file names it.
-    pub name: String,
-    /// What is tried.
-    pub tried: Tried,
-}
-
-/// The values of a free input.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Tried {
-    /// Values of an assumption, or of several that are moved together.
-    Values {
-        /// The assumptions.
-        moves: Vec<AssumptionName>,
-        /// Unit symbols of their numbers.
-        units: Vec<&'static str>,
-        /// The values, each one for every assumption.
-        values: Vec<Vec<AssumptionValue>>,
-    },
-    /// Factors of an assumption that is a number or a curve.
-    Factors {
-        /// The assumption, as in force or as another input has set it.
-        of: AssumptionName,
-        /// The factors.
-        by: Vec<f64>,
-    },
-    /// Solvers, in the place of the exact one.
-    Solvers(Vec<SolverChoice>),
-}
-
-impl Tried {
-    /// How many values there are.
-    #[must_use]
-    pub fn count(&self) -> usize {
-        match self {
-            Self::Values { values, .. } => values.len(),
-            Self::Factors { by, .. } => by.len(),
-            Self::Solvers(solvers) => solvers.len(),
-        }
-    }
-
-    /// True if it changes this assumption.
-    #[must_use]
-    pub fn moves(&self, name: &AssumptionName) -> bool {
-        match self {
-            Self::Values { moves, .. } => moves.contains(name),
-            Self::Factors { of, .. } => of == name,
-            Self::Solvers(_) => false,
-        }
-    }
 }
 
 impl Calibration {
@@ -314,7 +259,7 @@ fn tried(key: &str, span: Span, at: At<'_>, sheet: &AssumptionSheet) -> Option<T
         let values = values(at, moves.as_deref(), sheet);
         moves.zip(values).map(|(moves, values)| of(moves, values))
     };
-    let named = |at: At<'_>| at.form(|node, findings| sheet.named(node, findings), |_| assumptions_schema::any(sheet));
+    let named = |at: At<'_>| at.form(|node, findings| sheet.named(node, findings), |_| assumed_schema::any(sheet));
     let keyed = |at: At<'_>| {
         let keys = at.keys("an input")?;
         let forms = [("moves", "Assumptions that are moved together"), ("scales", "The assumption that is scaled")];
@@ -353,7 +298,7 @@ fn values(at: At<'_>, moves: Option<&[AssumptionName]>, sheet: &AssumptionSheet)
     at.list(|at| {
         at.form(
             |node, findings| value(node, moves?, sheet, findings),
-            |_| any_of("A value", vec![assumptions_schema::value(), list("One for each", assumptions_schema::value())]),
+            |_| any_of("A value", vec![any_value(), list("One for each", any_value())]),
         )
     })
 }

@@ -2,16 +2,17 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::recipe::{AssumptionName, Assumptions, ExcitationKind, Parameter, ParameterValue, Part};
+use super::recipe::{AssumptionName, AssumptionSheet, Assumptions, ExcitationKind, Parameter, ParameterValue, Part};
 use crate::dynamics::{EngineError, Until};
 use crate::measure::{CycleSpec, EnergySpec, Measure, Settings, ShapeSpec, SolverChoice, Tolerance, TraceSpec, Under};
 use crate::scene::Scene;
 use crate::yaml::{Findings, Span};
 
-use super::assumption_sheet::AssumptionSheet;
+use super::case::Case;
 use super::continued::ContinuedSweep;
-use super::definition::{Case, Experiment, Maximise, SearchPoint};
+use super::definition::Experiment;
 use super::figure_spec::{Drawing, FigureSpec, Panel};
+use super::maximise::{Maximise, SearchPoint};
 use super::optimise::Optimise;
 use super::refined::{Refinement, curves};
 use super::refusal::{Meant, Places, Refusal};

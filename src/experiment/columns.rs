@@ -5,9 +5,11 @@ use serde_json::json;
 use super::recipe::{GapWord, Parameter};
 use crate::yaml::{Findings, Span};
 
+use super::case::Case;
 use super::continuation::{BranchColumn, Continuation};
-use super::definition::{Case, Experiment, Maximise};
+use super::definition::Experiment;
 use super::figure_spec::Joined;
+use super::maximise::Maximise;
 use super::optimise::Optimise;
 use super::starts::{BasinColumn, START_LISTS, Starts};
 use crate::measure::{

@@ -5,20 +5,10 @@
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::definition::{Case, differing_in};
+use super::case::{Case, Direction, differing_in};
 use super::recipe::Parameter;
 use crate::yaml::word::word_of;
 use crate::yaml::{At, Keys, Span};
-
-/// The way that rows follow each other.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Direction {
-    /// From the smallest value of the parameter to the largest.
-    Up,
-    /// From the largest to the smallest.
-    Down,
-}
 
 /// Where rows start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -6,61 +6,22 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 
 use super::recipe::{
-    AssumptionName, AssumptionValue, Assumptions, Dependencies, Given, Parameter, ParameterValue, Recipe, RecipeError,
+    AssumptionName, AssumptionSheet, AssumptionValue, Assumptions, Dependencies, Given, Parameter, ParameterValue,
+    Recipe, RecipeError,
 };
 use crate::dynamics::Limit;
 use crate::measure::{CycleSpec, EnergySpec, Measure, Needs, Settings, ShapeSpec, SolverChoice, Tolerance, TraceSpec};
 
-use super::assumption_sheet::AssumptionSheet;
+use super::case::Case;
 use super::continuation::Continuation;
-use super::continued::{ContinuedSweep, Direction, chains};
+use super::continued::{ContinuedSweep, chains};
 use super::figure_spec::FigureSpec;
+use super::id::ExperimentId;
+use super::maximise::Maximise;
 use super::optimise::Optimise;
-use super::range::rounded;
 use super::refined::Refinement;
 use super::starts::Starts;
 use super::stated::Unsourced;
-use crate::yaml::word::word_of;
-
-/// Id of an experiment: its file name without ending, `ch3-limit-stop`; lower-case letters, digits and hyphens.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub struct ExperimentId(pub String);
-
-/// No id is longer.
-const LONGEST_ID: usize = 64;
-
-/// A text that is no id; nothing else ever becomes part of a path.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum IdError {
-    /// Of other characters, or of none.
-    #[error("`{0}` is not an id: lower-case letters, digits and hyphens, such as `ch3-limit-stop`")]
-    Characters(String),
-    /// Of too many.
-    #[error("`{0}` is not an id: it has {length} characters, {LONGEST_ID} are the most", length = .0.len())]
-    Long(String),
-}
-
-impl std::str::FromStr for ExperimentId {
-    type Err = IdError;
-
-    fn from_str(text: &str) -> Result<Self, IdError> {
-        let is_made_of_them =
-            text.bytes().all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'-');
-        if text.is_empty() || text.starts_with('-') || !is_made_of_them {
-            Err(IdError::Characters(text.into()))
-        } else if text.len() > LONGEST_ID {
-            Err(IdError::Long(text.into()))
-        } else {
-            Ok(Self(text.into()))
-        }
-    }
-}
-
-impl std::fmt::Display for ExperimentId {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.0)
-    }
-}
 
 /// An experiment: what is simulated, measured and drawn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -349,136 +310,3 @@ pub struct Source {
     /// `Fig. 18`, `Figs 20, 21`, `Table 2`, or a citation; as a reader would cite it.
     pub shown_in: Vec<String>,
 }
-
-/// One point of the sweep. A parameter that a union of sweeps leaves out of this point is absent.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Case {
-    /// Values by parameter, in the order of [`Experiment::swept`].
-    pub values: Vec<(Parameter, ParameterValue)>,
-    /// The name of the sweep within a union; empty otherwise.
-    pub sweep: String,
-    /// The way in which the rows of a continued sweep follow each other.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub direction: Option<Direction>,
-    /// The solvers it runs under: those of the experiment, unless its named sweep has its own.
-    pub solvers: Vec<SolverChoice>,
-}
-
-impl Case {
-    /// The value that this case gives to `parameter`, if it sets it.
-    #[must_use]
-    pub fn get(&self, parameter: Parameter) -> Option<ParameterValue> {
-        self.values.iter().find(|(name, _)| *name == parameter).map(|(_, value)| *value)
-    }
-
-    /// The same as a number, ∞ where it is `infinite`; `None` of a word too.
-    #[must_use]
-    pub fn number(&self, parameter: Parameter) -> Option<f64> {
-        match self.get(parameter)? {
-            ParameterValue::Number(x) => Some(x),
-            ParameterValue::Infinite => Some(f64::INFINITY),
-            _ => None,
-        }
-    }
-
-    /// The same with another number for a parameter that it has, to 13 digits, as all points of a sweep are.
-    #[must_use]
-    pub(crate) fn with(&self, parameter: Parameter, number: f64) -> Self {
-        let mut case = self.clone();
-        let own = case.values.iter_mut().filter(|(name, _)| *name == parameter);
-        own.for_each(|(_, value)| *value = ParameterValue::Number(rounded(number)));
-        case
-    }
-
-    /// In words: `gap_ratio = 50, stop = with`; empty when nothing is swept.
-    #[must_use]
-    pub fn describe(&self) -> String {
-        let description = self.values.iter().map(|(parameter, value)| {
-            let value = match value {
-                ParameterValue::Number(number) => format!("{number} {}", parameter.unit()),
-                other => word_of(*other),
-            };
-            format!("{} = {}", word_of(*parameter), value.trim_end())
-        });
-        let direction = self.direction.map(|direction| format!("direction = {}", word_of(direction)));
-        description.chain(direction).collect::<Vec<_>>().join(", ")
-    }
-}
-
-/// The cases of a sweep that differ in this parameter alone, by their index, in the order of their first ones.
-pub(super) fn differing_in(cases: &[Case], sweep: &str, over: Parameter) -> Vec<Vec<usize>> {
-    let others = |case: &Case| -> Vec<ParameterValue> {
-        case.values.iter().filter(|(parameter, _)| *parameter != over).map(|(_, value)| *value).collect()
-    };
-    let mut keys = Vec::new();
-    let mut found: Vec<Vec<usize>> = Vec::new();
-    for (index, case) in cases.iter().enumerate().filter(|(_, case)| case.sweep == sweep && case.get(over).is_some()) {
-        let key = (case.direction, others(case));
-        match keys.iter().position(|known| *known == key) {
-            Some(place) => found[place].push(index),
-            None => {
-                keys.push(key);
-                found.push(vec![index]);
-            }
-        }
-    }
-    found
-}
-
-/// Maximum of a measure over one parameter, or where it ceases to be zero.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Maximise {
-    /// Of which measure.
-    pub measure: Measure,
-    /// Over which parameter.
-    pub over: Parameter,
-    /// The grid.
-    pub grid: Vec<f64>,
-    /// Points added around the best one, round by round, to sharpen the maximum.
-    pub refine: u32,
-    /// Which point is looked for.
-    #[serde(default, skip_serializing_if = "SearchPoint::is_maximum")]
-    pub wanted: SearchPoint,
-}
-
-/// A point that is looked for over a parameter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum SearchPoint {
-    /// Where the measure is largest.
-    #[default]
-    Maximum,
-    /// From where on it is above zero: the first event of a kind.
-    Onset,
-}
-
-impl SearchPoint {
-    fn is_maximum(&self) -> bool {
-        *self == Self::Maximum
-    }
-}
-
-impl Maximise {
-    /// The column that says where the point lies: `force_ratio_at_maximum`.
-    pub(crate) fn column(&self) -> String {
-        let point = match self.wanted {
-            SearchPoint::Maximum => "maximum",
-            SearchPoint::Onset => "onset",
-        };
-        format!("{}_at_{point}", word_of(self.over))
-    }
-
-    /// Points that are looked at after the grid, at most.
-    pub(crate) fn points_after_grid(&self) -> u64 {
-        match self.wanted {
-            SearchPoint::Maximum => 2 * MOST_PEAKS as u64 * u64::from(self.refine),
-            SearchPoint::Onset => MOST_BISECTIONS,
-        }
-    }
-}
-
-/// Peaks of a grid that a maximum is looked for at, the highest: a low one may hide a higher one between its points.
-pub(crate) const MOST_PEAKS: usize = 5;
-
-/// Bisections that bring any interval below the distance of two numbers that an onset is known by.
-const MOST_BISECTIONS: u64 = 60;

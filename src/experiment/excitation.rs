@@ -1,9 +1,8 @@
 //! The excitation of a scene.
 
-use super::assumption_sheet::Takes;
 use super::recipe::{
     Carried, ExcitationKind, ExcitationRecipe, ForcingOrNatural, Given, ImpulseTime, ImpulseTimeRecipe, Parameter,
-    Slot, StrengthRecipe, TimingRecipe,
+    Slot, StrengthRecipe, Takes, TimingRecipe,
 };
 use super::scene::SceneReader;
 use crate::scene::{Kind, PulseShape};

@@ -2,8 +2,8 @@
 
 use serde_json::json;
 
+use super::case::Case;
 use super::columns::{Columns, Role};
-use super::definition::Case;
 use super::figure_spec::{
     AnimationSpec, Axis, AxisScale, AxisUnit, Band, Drawing, FigureSpec, Level, Only, Panel, PeakMarks, Strip,
 };

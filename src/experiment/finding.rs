@@ -7,7 +7,7 @@
 //! | `{held out}`, `{held out in force}` | how many of those held out |
 //! | `{INPUT: VALUE}` | the least residual with this value, as the table of inputs has them |
 
-use super::calibration::CalibrationInput;
+use super::calibration_input::CalibrationInput;
 use crate::text::braces::{Part, Unclosed, parts};
 
 /// A finding, taken apart; empty before there is one.

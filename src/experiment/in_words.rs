@@ -1,6 +1,6 @@
 //! Values of assumptions, and of inputs that a calibration tries, as a reader meets them.
 
-use super::calibration::Tried;
+use super::calibration_input::Tried;
 use super::recipe::AssumptionValue;
 use crate::measure::SolverChoice;
 use crate::text::{number, words};

@@ -1,7 +1,6 @@
 //! Where in a file a part of its meaning is written.
 
-use super::assumption_sheet::assumption_of;
-use super::recipe::Part;
+use super::recipe::{Part, assumption_of};
 use crate::yaml::{Findings, Node, Value, read_tree};
 
 /// The line, counted from 1, on which the leaf at `path` of an experiment's or the assumptions' meaning is written, or the

@@ -4,13 +4,13 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use super::recipe::Assumptions;
+use super::recipe::{AssumptionSheet, Assumptions};
 use crate::atomic::from_here;
-use crate::yaml::{At, Findings, LONGEST, Problems, read_tree, too_long};
+use crate::yaml::{LONGEST, Problems, too_long};
 
 use super::assumption_reader::parse_assumptions;
-use super::assumption_sheet::AssumptionSheet;
-use super::definition::{Experiment, ExperimentId};
+use super::definition::Experiment;
+use super::id::ExperimentId;
 use super::validate::parse_experiment;
 use crate::text::utf8::decode;
 
@@ -34,16 +34,6 @@ pub fn load_experiment(path: &Path, assumptions: &Assumptions) -> Result<Experim
 pub fn load_assumptions(path: &Path) -> Result<AssumptionSheet, Problems> {
     let file = from_here(path);
     parse_assumptions(&file, &read(path, &file)?)
-}
-
-/// What `reader` makes of a text; `file` only names it in messages.
-///
-/// # Errors
-/// Every mistake of the text, with its place.
-pub(crate) fn parsed<T>(file: &str, text: &str, reader: impl FnOnce(At<'_>) -> Option<T>) -> Result<T, Problems> {
-    let findings = Findings::default();
-    let value = read_tree(text, &findings).and_then(|root| reader(At::Node(&root, &findings)));
-    findings.finish(file, text, value)
 }
 
 pub(crate) fn read(path: &Path, file: &str) -> Result<String, Problems> {

@@ -1,6 +1,6 @@
 //! The point of a curve that is looked for: `maximise`, `onset`.
 
-use super::definition::{Maximise, SearchPoint};
+use super::maximise::{Maximise, SearchPoint};
 use super::range::numbers;
 use super::recipe::Parameter;
 use crate::measure::Measure;

@@ -3,10 +3,13 @@
 //! A tree of nodes that know where they stand ([`crate::yaml`]) → [`Experiment`] (units resolved, defaults filled, no places).
 
 mod about_study;
+mod assumed_schema;
 mod assumption_reader;
-mod assumption_sheet;
 mod assumptions_schema;
+mod by_strength;
 mod calibration;
+mod calibration_input;
+mod case;
 mod check;
 mod columns;
 mod continuation;
@@ -18,6 +21,7 @@ mod exclusions;
 mod figure;
 mod figure_spec;
 mod finding;
+mod id;
 mod in_words;
 mod limit;
 mod line;
@@ -25,6 +29,7 @@ mod lists;
 mod load;
 mod looked_for;
 mod map;
+mod maximise;
 mod measures;
 mod optimise;
 mod optimise_reader;
@@ -34,6 +39,7 @@ mod range;
 mod recipe;
 mod refined;
 mod refusal;
+mod row_source;
 mod run;
 mod scaffold;
 mod scene;
@@ -50,41 +56,43 @@ pub use about_study::{
     AboutStudy, Author, Finding, Licence, LineColour, Publication, PublicationKind, parse_study, study_schema,
 };
 pub use assumption_reader::parse_assumptions;
-pub(crate) use assumption_sheet::assumption_of;
-pub use assumption_sheet::{
-    ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Moved, Quantity, Takes,
-};
 pub use assumptions_schema::assumptions_schema;
-pub use calibration::{
-    Calibration, CalibrationInput, CalibrationSearch, Residual, Tried, calibration_schema, parse_calibration,
-};
+pub(crate) use by_strength::by_strength;
+pub use calibration::{Calibration, CalibrationSearch, Residual, calibration_schema, parse_calibration};
+pub use calibration_input::{CalibrationInput, Tried};
+pub use case::{Case, Direction};
 pub(crate) use columns::Columns;
-pub use continuation::{BranchColumn, Continuation, RowSource, Stability};
-pub use continued::{ContinuedSweep, Direction};
-pub(crate) use definition::MOST_PEAKS;
-pub use definition::{Case, Experiment, ExperimentId, IdError, Maximise, SearchPoint, Source, Transient};
+pub use continuation::{BranchColumn, Continuation, Stability};
+pub use continued::ContinuedSweep;
+pub use definition::{Experiment, Source, Transient};
 pub(crate) use figure::SCENE_DRAWING;
 pub use figure_spec::{
     AnimationSpec, Axis, AxisScale, AxisUnit, Band, Best, Drawing, FigureSpec, Joined, Level, MapSpec, Mark, Only,
     Panel, PeakMarks, Strip,
 };
 pub use finding::{FindingError, FindingNumber, FindingText, InputSet};
+pub use id::{ExperimentId, IdError};
 pub use in_words::value_in_words;
 pub use limit::{NoLimit, RowLimit};
 pub use line::line_of;
+pub(crate) use load::read;
 pub use load::{load_assumptions, load_experiment};
-pub(crate) use load::{parsed, read};
+pub(crate) use maximise::MOST_PEAKS;
+pub use maximise::{Maximise, SearchPoint};
 pub use optimise::{Candidate, Goal, Landscape, Optimise, Search, SearchKind, SearchSpacing};
+pub(crate) use recipe::assumption_of;
 pub use recipe::{
-    ArrayOrder, ArrayRecipe, Assumable, AssumptionName, AssumptionValue, Assumptions, Carried, ContactDampingConstant,
-    ContactDampingRatio, ContactDampingRecipe, Coordinate, DamperRecipe, ExcitationKind, ExcitationRecipe, Filling,
-    FloorStiffness, ForcingOrNatural, GapRecipe, GapWord, Given, ImpulseTime, ImpulseTimeRecipe, MassReading,
-    MassRecipe, MeanRatio, ObserveRecipe, Parameter, ParameterValue, Part, PlaceRecipe, PointsRecipe, Recipe,
-    RecipeError, Reference, Slot, StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe,
-    SweptSlots, TimingRecipe, WallRecipe,
+    ASSUMPTIONS, ArrayOrder, ArrayRecipe, Assumable, AssumptionEntry, AssumptionKind, AssumptionName, AssumptionSheet,
+    AssumptionValue, Assumptions, Carried, ContactDampingConstant, ContactDampingRatio, ContactDampingRecipe,
+    Coordinate, Cycles, DamperRecipe, ExcitationKind, ExcitationRecipe, Filling, FloorStiffness, ForcingOrNatural,
+    GapRecipe, GapWord, Given, ImpulseTime, ImpulseTimeRecipe, MassReading, MassRecipe, MeanRatio, Moved,
+    ObserveRecipe, Parameter, ParameterValue, Part, PlaceRecipe, PointsRecipe, Quantity, Recipe, RecipeError,
+    Reference, Slot, StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe, SweptSlots, Takes,
+    TimingRecipe, WallRecipe,
 };
-pub(crate) use refined::{Curve, by_strength, curves};
+pub(crate) use refined::{Curve, curves};
 pub use refined::{Refinement, Threshold};
+pub use row_source::RowSource;
 pub use scaffold::{scaffold, structures};
 pub use starts::{BasinColumn, HeightBox, Interval, ParticleBox, Rank, START_LISTS, Starts};
 pub use stated::Unsourced;

@@ -3,12 +3,14 @@
 use std::iter;
 
 use super::about_study::MOST_CHAPTERS;
+use super::case::Case;
 use super::columns::{Columns, Lists, TableParts};
 use super::continuation_reader::{ReadContinuation, read_continuation};
-use super::definition::{Case, Maximise, Source};
+use super::definition::Source;
 use super::exclusions::{check_lists, check_mean, check_rows};
 use super::lists::{read_each_cycle, read_energies, read_shape, read_tolerances, read_trace};
 use super::looked_for::{read_maximise, read_onset};
+use super::maximise::Maximise;
 use super::measures::{bring, read_measures};
 use super::optimise::Optimise;
 use super::optimise_reader::{ReadOptimise, read_optimise};

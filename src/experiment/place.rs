@@ -2,10 +2,9 @@
 
 use serde_json::json;
 
-use super::assumption_sheet::{Quantity, Takes};
 use super::recipe::{
     ArrayRecipe, AssumptionName, AssumptionValue, Coordinate, Given, ObserveRecipe, Parameter, PlaceRecipe,
-    PointsRecipe, Slot,
+    PointsRecipe, Quantity, Slot, Takes,
 };
 use super::scene::{AT, MOST_DAMPERS, SceneReader};
 use crate::scene::{Kind, Take};

@@ -6,7 +6,7 @@
 use serde_json::json;
 
 use super::figure_spec::AxisScale;
-use super::recipe::{Parameter, ParameterValue, Takes};
+use super::recipe::{Parameter, ParameterTakes, ParameterValue};
 use crate::yaml::reader::scalar;
 use crate::yaml::word::word_of;
 use crate::yaml::{At, Findings, Node, Span, Value, schema};
@@ -68,17 +68,17 @@ fn part(at: At<'_>, parameter: Option<Parameter>) -> Option<Vec<ParameterValue>>
 pub(super) fn by_kind<T>(
     at: At<'_>,
     prefix: &str,
-    takes: Option<Takes>,
+    takes: Option<ParameterTakes>,
     read: impl FnOnce(At<'_>) -> Option<T>,
 ) -> Option<T> {
     let (At::Sketch(_), Some(takes)) = (at, takes) else { return read(at) };
     let kind = match takes {
-        Takes::Words(words) => words.iter().map(|word| word_of(*word)).collect::<Vec<_>>().join("_or_"),
-        Takes::Quantity(dimension) => dimension.name().replace(' ', "_"),
-        Takes::Ratio => "a_ratio".into(),
-        Takes::RatioOrInfinite => "a_ratio_or_infinite".into(),
+        ParameterTakes::Words(words) => words.iter().map(|word| word_of(*word)).collect::<Vec<_>>().join("_or_"),
+        ParameterTakes::Quantity(dimension) => dimension.name().replace(' ', "_"),
+        ParameterTakes::Ratio => "a_ratio".into(),
+        ParameterTakes::RatioOrInfinite => "a_ratio_or_infinite".into(),
     };
-    let about = if matches!(takes, Takes::Words(_)) { "One of these" } else { "A value" };
+    let about = if matches!(takes, ParameterTakes::Words(_)) { "One of these" } else { "A value" };
     at.named(&format!("{prefix}{kind}"), about, read)
 }
 
@@ -86,7 +86,7 @@ pub(super) fn by_kind<T>(
 pub(super) fn value(at: At<'_>, parameter: Option<Parameter>) -> Option<ParameterValue> {
     let takes = parameter.map(Parameter::takes);
     match takes {
-        Some(Takes::Words(known)) => by_kind(at, "", takes, |at| {
+        Some(ParameterTakes::Words(known)) => by_kind(at, "", takes, |at| {
             let read = |node: &Node, findings: &Findings| {
                 let word = if let Value::Scalar(text) = &node.value { text.as_str() } else { "" };
                 known.iter().copied().find(|known| word_of(*known) == word).or_else(|| {
@@ -99,7 +99,7 @@ pub(super) fn value(at: At<'_>, parameter: Option<Parameter>) -> Option<Paramete
                 |about: &str| schema::one_of_words(about, &known.iter().map(|word| word_of(*word)).collect::<Vec<_>>());
             at.form(read, |it| words(it.about()))
         }),
-        Some(Takes::RatioOrInfinite) => by_kind(at, "", takes, |at| {
+        Some(ParameterTakes::RatioOrInfinite) => by_kind(at, "", takes, |at| {
             if at.is_word("infinite") {
                 return Some(ParameterValue::Infinite);
             }
@@ -112,9 +112,9 @@ pub(super) fn value(at: At<'_>, parameter: Option<Parameter>) -> Option<Paramete
 /// A value of a parameter that is a number, in SI.
 pub(super) fn size(at: At<'_>, parameter: Option<Parameter>) -> Option<f64> {
     match parameter.map(Parameter::takes) {
-        Some(takes @ Takes::Quantity(dimension)) => by_kind(at, "", Some(takes), |at| at.quantity(dimension)),
-        Some(Takes::Words(_) | Takes::Ratio | Takes::RatioOrInfinite) => {
-            by_kind(at, "", Some(Takes::Ratio), |at| at.ratio())
+        Some(takes @ ParameterTakes::Quantity(dimension)) => by_kind(at, "", Some(takes), |at| at.quantity(dimension)),
+        Some(ParameterTakes::Words(_) | ParameterTakes::Ratio | ParameterTakes::RatioOrInfinite) => {
+            by_kind(at, "", Some(ParameterTakes::Ratio), |at| at.ratio())
         }
         None => at.form(|_, _| None, |_| json!({"type": ["number", "string"]})),
     }
@@ -127,7 +127,7 @@ fn describe(words: &[ParameterValue]) -> [String; 2] {
 }
 
 fn range(at: At<'_>, parameter: Option<Parameter>) -> Option<Vec<ParameterValue>> {
-    if let Some((Takes::Words(words), parameter)) = parameter.map(|parameter| (parameter.takes(), parameter)) {
+    if let Some((ParameterTakes::Words(words), parameter)) = parameter.map(|parameter| (parameter.takes(), parameter)) {
         let [one, other] = describe(words).map(|word| word.replace('`', ""));
         return at.wrong(format!("`{}` is swept over [{one}, {other}]", word_of(parameter)));
     }

@@ -1,11 +1,9 @@
 //! Refined ranges: a few points to start with, and the rule by which a run adds more where a curve bends.
 
-use std::collections::BTreeSet;
-
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::definition::{Case, Experiment, differing_in};
+use super::case::{Case, differing_in};
 use super::figure_spec::AxisScale;
 use super::measures::read_measure;
 use super::range::{between, end, in_order, rounded};
@@ -150,16 +148,4 @@ pub(crate) fn curves<'a>(cases: &[Case], rules: impl IntoIterator<Item = &'a Ref
     let mut curves: Vec<Curve<'a>> = rules.into_iter().flat_map(of_rule).collect();
     curves.sort_by_key(|curve| curve.cases.first().copied());
     curves
-}
-
-/// The cases that differ in a strength of the drive alone, by their index, with that strength.
-pub(crate) fn by_strength(experiment: &Experiment) -> Vec<(Parameter, Vec<usize>)> {
-    let sweeps: BTreeSet<&str> = experiment.cases.iter().map(|case| case.sweep.as_str()).collect();
-    let mut found = Vec::new();
-    for over in experiment.swept.iter().copied().filter(|parameter| parameter.is_strength()) {
-        for sweep in &sweeps {
-            found.extend(differing_in(&experiment.cases, sweep, over).into_iter().map(|cases| (over, cases)));
-        }
-    }
-    found
 }

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::definition::{Case, Experiment};
+use super::case::Case;
+use super::definition::Experiment;
 use super::line::{exactly, part_of};
 use super::recipe::{Parameter, Part, RecipeError};
 use crate::yaml::word::word_of;

@@ -4,12 +4,11 @@ use std::collections::BTreeMap;
 
 use serde_json::json;
 
+use super::assumed_schema;
 use super::assumption_reader::{AVERAGE, SKIP, read_average, read_skip};
-use super::assumption_sheet::{AssumptionSheet, Cycles, Takes};
-use super::assumptions_schema;
 use super::definition::Transient;
 use super::limit::read_limit;
-use super::recipe::{AssumptionName, AssumptionValue};
+use super::recipe::{AssumptionName, AssumptionSheet, AssumptionValue, Cycles, Takes};
 use super::scene::assumption;
 use super::solver::read_solver;
 use crate::dynamics::{Limit, Until};
@@ -133,8 +132,7 @@ fn given_run(at: At<'_>, sheet: &AssumptionSheet) -> Option<GivenRun> {
         if at.is_word("none") {
             return Some(BTreeMap::new());
         }
-        let name =
-            |at: At<'_>| at.form(|node, findings| sheet.named(node, findings), |_| assumptions_schema::any(sheet));
+        let name = |at: At<'_>| at.form(|node, findings| sheet.named(node, findings), |_| assumed_schema::any(sheet));
         at.one_or_more(|at| Some((name(at)?, at.span()))).map(|names| names.into_iter().collect())
     });
     let most = "The most that a row may take; one that reaches it has failed, with the reason, and the others go on";

@@ -2,7 +2,7 @@
 
 use crate::scene::{Form, KINDS, Kind};
 
-use super::definition::ExperimentId;
+use super::id::ExperimentId;
 
 /// Words for the structures that a scaffold can have.
 #[must_use]

@@ -6,14 +6,15 @@ use std::collections::BTreeSet;
 use serde::de::DeserializeOwned;
 use serde_json::json;
 
+use super::assumed_schema;
 use super::assumption_reader::{fits, read_curve};
-use super::assumption_sheet::{ASSUMPTIONS, AssumptionSheet, Quantity, Takes};
-use super::assumptions_schema;
 use super::recipe::{
-    AssumptionName, Assumptions, Carried, ContactDampingConstant, ContactDampingRatio, ContactDampingRecipe,
-    DamperRecipe, Filling, FloorStiffness, GapRecipe, Given, MassReading, MassRecipe, MeanRatio, Parameter, Recipe,
-    Reference, Slot, StiffnessRecipe, StopRecipe, SurfaceRecipe, SweptSlots, WallRecipe,
+    ASSUMPTIONS, AssumptionName, AssumptionSheet, Assumptions, Carried, ContactDampingConstant, ContactDampingRatio,
+    ContactDampingRecipe, DamperRecipe, Filling, FloorStiffness, GapRecipe, Given, MassReading, MassRecipe, MeanRatio,
+    Parameter, Quantity, Recipe, Reference, Slot, StiffnessRecipe, StopRecipe, SurfaceRecipe, SweptSlots, Takes,
+    WallRecipe,
 };
+use super::stated::{names_assumption, names_assumption_value};
 use super::structure::read_structure;
 use crate::measure::Comparison;
 use crate::scene::{KINDS, Kind, STANDARD_GRAVITY};
@@ -506,7 +507,7 @@ pub(super) fn assumption(
         }
         At::Node(node, findings) => names_assumption(node).then(|| named(sheet, node, takes, &place(), findings)),
         At::Sketch(it) => {
-            it.add(assumptions_schema::assumed(it, sheet, takes));
+            it.add(assumed_schema::assumed(it, sheet, takes));
             None
         }
     }
@@ -538,13 +539,4 @@ fn one_reading<T: DeserializeOwned>(at: At<'_>, slot: Slot) -> Option<T> {
         choice.bare()?;
         from_word(choice.name())
     })
-}
-
-/// It says `{assumed: …}`.
-pub(super) fn names_assumption(node: &Node) -> bool {
-    names_assumption_value(&node.value)
-}
-
-fn names_assumption_value(value: &Value) -> bool {
-    matches!(value, Value::Mapping(entries) if matches!(entries.as_slice(), [entry] if entry.key == "assumed"))
 }

@@ -17,7 +17,6 @@ use std::fmt;
 use serde_json::json;
 
 use super::about_study::chapter_number;
-use super::scene::names_assumption;
 use crate::yaml::{Amount, At, Findings, Node, Span, Value, parse_amount, schema};
 
 /// The key of statements, in an experiment and in the assumptions file.
@@ -216,4 +215,13 @@ fn leaf(node: &Node) -> Option<(Vec<Amount>, String)> {
         }
         _ => None,
     }
+}
+
+/// It says `{assumed: …}`.
+pub(super) fn names_assumption(node: &Node) -> bool {
+    names_assumption_value(&node.value)
+}
+
+pub(super) fn names_assumption_value(value: &Value) -> bool {
+    matches!(value, Value::Mapping(entries) if matches!(entries.as_slice(), [entry] if entry.key == "assumed"))
 }

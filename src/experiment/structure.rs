@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::assumption_sheet::{Quantity, Takes};
-use super::recipe::{Given, Parameter, Slot, StructureRecipe};
+use super::recipe::{Given, Parameter, Quantity, Slot, StructureRecipe, Takes};
 use super::scene::SceneReader;
 use crate::scene::{FieldValue, Form, KINDS, Kind};
 use crate::yaml::reader::{scalar, unknown};

@@ -9,8 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::json;
 
-use super::continued::{Continued, ContinuedSweep, Direction, KEYS, chains};
-use super::definition::Case;
+use super::case::{Case, Direction};
+use super::continued::{Continued, ContinuedSweep, KEYS, chains};
 use super::range::{MOST_POINTS, by_kind, too_many, value, values};
 use super::recipe::{Parameter, ParameterValue};
 use super::refined::{Refinement, is_refined, refined};

@@ -3,12 +3,12 @@
 //! A check runs as soon as the parts it talks about are sound, so a mistake in a figure is reported beside one in the
 //! scene. The last check resolves every case into its scene: what physics refuses is found before anything runs.
 
-use super::assumption_sheet::AssumptionSheet;
 use super::check::Checks;
-use super::definition::{Experiment, ExperimentId};
+use super::definition::Experiment;
 use super::figure::FigureReader;
+use super::id::ExperimentId;
 use super::parts::{Head, Parts, Sound};
-use super::recipe::{Assumptions, Parameter, ParameterValue};
+use super::recipe::{AssumptionSheet, Assumptions, Parameter, ParameterValue};
 use super::refusal::Places;
 use super::scene::ReadScene;
 use super::stated::without_source;

@@ -17,8 +17,8 @@ use super::selection::Selection;
 use super::tube::Curve;
 use super::verdict::Verdict;
 use crate::atomic::from_here;
-use crate::experiment::{parsed, read};
-use crate::yaml::{At, Keys, Problems, Span, Value, described, place, words_of};
+use crate::experiment::read;
+use crate::yaml::{At, Keys, Problems, Span, Value, described, parsed, place, words_of};
 
 /// Reads a reference file; its name is the id of its experiment.
 ///

@@ -4,11 +4,11 @@
 //! the plan has to come exactly once. Then the join is a matter of order, and the bytes are those of a single run.
 
 use super::failures::Failures;
+use super::finished::Finished;
 use super::job::jobs;
 use super::layout::Layout;
 use super::plan::Item;
 use super::shard::{NotThePart, ROW, Shard, divisible, owner, owners};
-use super::task::Finished;
 use crate::experiment::ExperimentId;
 use crate::table::{Column, Data, Table, parquet};
 use crate::text::words::counted;

@@ -10,10 +10,11 @@ use rayon::prelude::*;
 
 use super::evaluate::guarded;
 use super::event::{Event, EventHandler};
+use super::finished::Finished;
 use super::row_failure::RowFailure;
 use super::spent::Meter;
 use super::tabulate_branches::{BranchRow, failures, table};
-use super::task::{Finished, Task};
+use super::task::Task;
 use super::variant::Variant;
 use crate::dynamics::{
     Allowance, Along, Branch, BranchEnd, BranchError, BranchPoint, EngineError, HybridSystem, Options, Orbit,

@@ -10,10 +10,10 @@ use std::fs;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use super::finished::Finished;
 use super::job::{Job, cost, jobs, units};
 use super::layout::Layout;
 use super::plan::Item;
-use super::task::Finished;
 use super::variant::Variant;
 use crate::experiment::{Experiment, ExperimentId};
 use crate::table::{Column, Data, ParquetError, Table, parquet};

@@ -4,12 +4,12 @@ use std::fs::{self, File, TryLockError};
 use std::io::Write;
 use std::path::Path;
 
+use super::finished::Finished;
 use super::known_rows::KnownRows;
 use super::layout::{Layout, journal_name, record_name, table_name};
 use super::plan::{Item, State};
 use super::record::{FileHash, RECORD_FORMAT, Record};
 use super::shard::Shard;
-use super::task::Finished;
 use super::{earlier, spent};
 use crate::atomic::{self, FileError};
 use crate::experiment::ExperimentId;

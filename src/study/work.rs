@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use super::chain;
 use super::evaluate::Evaluate;
 use super::event::EventHandler;
+use super::finished::Finished;
 use super::job::{Job, evaluations, jobs};
 use super::row::outcome;
 use super::row_failure::RowFailure;
@@ -13,7 +14,7 @@ use super::row_fingerprint::RowFingerprints;
 use super::shard::{Shard, part};
 use super::spent::Spent;
 use super::tabulate::{self, Outcome};
-use super::task::{Finished, Task};
+use super::task::Task;
 use crate::dynamics::is_interrupted;
 use crate::table::RowFingerprint;
 

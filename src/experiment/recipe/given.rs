@@ -9,9 +9,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::assumption_sheet::{ASSUMPTIONS, AssumptionSheet};
 use super::parts::RecipeError;
 use super::slot::Slot;
-use crate::experiment::assumption_sheet::{ASSUMPTIONS, AssumptionSheet};
 use crate::scene::{Curve, FieldValue, Take, whole};
 use crate::yaml::word::{from_word, word_of};
 

@@ -3,6 +3,7 @@
 //! A [`Recipe`] holds what the file says. [`Recipe::set`] gives a swept parameter its value, [`Recipe::resolve`] makes the
 //! [`crate::scene::Scene`], and `Recipe::dependencies` says which assumptions were read for it.
 
+mod assumption_sheet;
 mod drive;
 mod given;
 mod parameter;
@@ -13,8 +14,12 @@ mod slot;
 mod structure;
 mod swept;
 
+pub(crate) use assumption_sheet::assumption_of;
+pub use assumption_sheet::{
+    ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Moved, Quantity, Takes,
+};
 pub use given::{Assumable, AssumptionName, AssumptionValue, Assumptions, Given};
-pub use parameter::{Parameter, ParameterValue, Takes};
+pub use parameter::{Parameter, ParameterTakes, ParameterValue};
 pub use parts::{
     ArrayOrder, ArrayRecipe, Carried, ContactDampingConstant, ContactDampingRatio, ContactDampingRecipe, DamperRecipe,
     ExcitationKind, ExcitationRecipe, Filling, FloorStiffness, ForcingOrNatural, GapRecipe, GapWord, ImpulseTime,

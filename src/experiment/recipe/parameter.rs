@@ -116,7 +116,7 @@ pub enum ParameterValue {
 
 /// What a parameter is: one row of this table; reader, JSON Schema, table columns and pages follow from it.
 struct Description {
-    takes: Takes,
+    takes: ParameterTakes,
     /// Symbol of the field, empty if it has none.
     symbol: &'static str,
     /// The part of a scene that it belongs to.
@@ -127,7 +127,7 @@ struct Description {
 
 /// What values a parameter takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Takes {
+pub enum ParameterTakes {
     /// These words and no number.
     Words(&'static [ParameterValue]),
     /// Numbers with a unit.
@@ -146,8 +146,8 @@ const EXCITATION: Option<Part> = Some(Part::Excitation);
 impl Parameter {
     fn description(self) -> Description {
         use Dimension::{AngularFrequency, Force, Impulse, Length, Mass, Time};
+        use ParameterTakes::{Quantity, Ratio, RatioOrInfinite, Words};
         use ParameterValue as Value;
-        use Takes::{Quantity, Ratio, RatioOrInfinite, Words};
         let (symbol, takes, of, mark) = match self {
             Self::ForceRatio => ("f′", Ratio, EXCITATION, "force_ratio: swept"),
             Self::BaseAmplitudeRatio => ("aω²/g", Ratio, EXCITATION, "base_amplitude_ratio: swept"),
@@ -189,7 +189,7 @@ impl Parameter {
 
     /// What values it takes.
     #[must_use]
-    pub fn takes(self) -> Takes {
+    pub fn takes(self) -> ParameterTakes {
         self.description().takes
     }
 
@@ -197,8 +197,8 @@ impl Parameter {
     #[must_use]
     pub fn words(self) -> &'static [ParameterValue] {
         match self.takes() {
-            Takes::Words(words) => words,
-            Takes::Quantity(_) | Takes::Ratio | Takes::RatioOrInfinite => &[],
+            ParameterTakes::Words(words) => words,
+            ParameterTakes::Quantity(_) | ParameterTakes::Ratio | ParameterTakes::RatioOrInfinite => &[],
         }
     }
 
@@ -237,8 +237,8 @@ impl Parameter {
     #[must_use]
     pub fn unit(self) -> &'static str {
         match self.takes() {
-            Takes::Quantity(dimension) => dimension.unit(),
-            Takes::Words(_) | Takes::Ratio | Takes::RatioOrInfinite => "",
+            ParameterTakes::Quantity(dimension) => dimension.unit(),
+            ParameterTakes::Words(_) | ParameterTakes::Ratio | ParameterTakes::RatioOrInfinite => "",
         }
     }
 

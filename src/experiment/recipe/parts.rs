@@ -4,12 +4,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::assumption_sheet::ASSUMPTIONS;
 use super::given::{AssumptionName, Given};
 use super::parameter::Parameter;
 use super::place::PlaceRecipe;
 use super::structure::StructureRecipe;
 use super::swept::SweptSlots;
-use crate::experiment::assumption_sheet::ASSUMPTIONS;
 use crate::measure::Comparison;
 use crate::scene::{Curve, PulseShape, Start, StartError, StructureError, Take};
 

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::experiment::assumption_sheet::{Quantity, Takes};
+use super::assumption_sheet::{Quantity, Takes};
 use crate::yaml::Dimension;
 
 macro_rules! slots {

@@ -16,9 +16,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::assumption_reader::{alike, read_value};
-use super::recipe::{AssumptionName, AssumptionValue, Assumptions, Slot};
-use super::stated::{StatedByChapter, Statement};
+use super::given::{AssumptionName, AssumptionValue, Assumptions};
+use super::slot::Slot;
+use crate::experiment::stated::{StatedByChapter, Statement};
 use crate::yaml::reader::{no_such, scalar};
 use crate::yaml::word::closest;
 use crate::yaml::{Dimension, Findings, Node, Place, Problems};
@@ -30,17 +30,17 @@ pub const ASSUMPTIONS: &str = "experiments/assumptions.yaml";
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct AssumptionSheet {
     /// Entries in the order of the file.
-    pub(super) entries: Vec<(AssumptionName, Arc<AssumptionEntry>)>,
+    pub(in crate::experiment) entries: Vec<(AssumptionName, Arc<AssumptionEntry>)>,
     /// Which assumption stands for a slot on a kind of structure.
-    pub(super) defaults: Arc<Defaults>,
+    pub(in crate::experiment) defaults: Arc<Defaults>,
     /// The cycles of experiments that do not say.
-    pub(super) cycles: Option<Cycles>,
+    pub(in crate::experiment) cycles: Option<Cycles>,
     /// What the text states, by chapter.
-    pub(super) stated: Arc<StatedByChapter>,
+    pub(in crate::experiment) stated: Arc<StatedByChapter>,
 }
 
 /// The assumption of each slot that has one, by kind of structure.
-pub(super) type Defaults = BTreeMap<(Slot, &'static str), AssumptionName>;
+pub(in crate::experiment) type Defaults = BTreeMap<(Slot, &'static str), AssumptionName>;
 
 /// How many forcing cycles a run skips, and over how many it averages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -240,7 +240,7 @@ impl AssumptionSheet {
     }
 
     /// What the text of this chapter states of the inputs.
-    pub(super) fn stated(&self, chapter: Option<u32>) -> &[Statement] {
+    pub(in crate::experiment) fn stated(&self, chapter: Option<u32>) -> &[Statement] {
         chapter.and_then(|number| self.stated.get(&number)).map_or(&[], Vec::as_slice)
     }
 
@@ -276,7 +276,7 @@ impl AssumptionSheet {
     }
 
     /// Names as they are declared, for suggestions.
-    pub(super) fn names(&self) -> Vec<&str> {
+    pub(in crate::experiment) fn names(&self) -> Vec<&str> {
         self.iter().map(|(name, _)| name.as_str()).collect()
     }
 
@@ -292,7 +292,7 @@ impl AssumptionSheet {
     }
 
     /// The declared name that a word is, or a refusal with the nearest one.
-    pub(super) fn named(&self, node: &Node, findings: &Findings) -> Option<AssumptionName> {
+    pub(in crate::experiment) fn named(&self, node: &Node, findings: &Findings) -> Option<AssumptionName> {
         let word = scalar(node, findings)?;
         if let Some((name, _)) = self.iter().find(|(name, _)| name.as_str() == word) {
             return Some(name.clone());
@@ -302,12 +302,5 @@ impl AssumptionSheet {
         }
         let help = format!("declare it in {ASSUMPTIONS}: `{word}: {{quantity: …, value: …, reason: …}}`");
         findings.report(node.span, format!("`{word}` is not an assumption"), Some(help))
-    }
-
-    /// A value of this assumption.
-    pub(super) fn value_of(&self, name: &AssumptionName, node: &Node, findings: &Findings) -> Option<AssumptionValue> {
-        let entry = self.get(name)?;
-        let value = read_value(node, &entry.kind, findings)?;
-        alike(&entry.value, &value, node, findings).then_some(value)
     }
 }
