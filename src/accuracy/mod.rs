@@ -7,6 +7,7 @@ mod ablation;
 mod ablation_page;
 mod measured;
 mod no_accuracy;
+mod over_cases;
 mod page;
 pub mod precise;
 mod publish;
@@ -14,12 +15,13 @@ mod representative;
 mod scatter;
 mod timing;
 mod verdict_price;
+mod view;
 
 pub use ablation::{Ablation, Idle, Outcome, Switched, ablation, idle_cases, unreached_cases};
 pub use ablation_page::{ablation_page, out_of_reach_in_words};
 pub use measured::{Accuracy, CaseAccuracy, Contender, Errors, EventTimes, Origin, Point, Skipped, accuracy, errors};
 pub use no_accuracy::NoAccuracy;
-pub use page::{AccuracyView, accuracy_page, accuracy_summary};
+pub use page::{accuracy_page, accuracy_summary};
 pub use publish::{
     Measured, accuracy_view, check_publishable, keep_measured, publish_accuracy, publish_accuracy_summary,
     read_measured,
@@ -27,3 +29,4 @@ pub use publish::{
 pub use representative::representative;
 pub use timing::Times;
 pub use verdict_price::VerdictPrice;
+pub use view::AccuracyView;

@@ -1,42 +1,22 @@
 //! What accuracy costs: the page of one experiment, and the summary of all.
 
-use crate::measure::{SolverChoice, column_words};
+use crate::measure::column_words;
 use crate::study::Machine;
 
-use super::measured::{Accuracy, CaseAccuracy, Contender, Origin, Point};
-use crate::text::number::{compact, quantity, significant};
+use super::measured::{CaseAccuracy, Contender, Origin, Point};
+use crate::text::number::{compact, significant};
 use crate::text::words::{self, counted};
 
+use super::over_cases::{DIVERGED, cheapest, fixed_steps, name, next_digit, over, seconds};
 use super::representative::TWIN;
 use super::scatter;
-use super::verdict_price::{self, VerdictPrice};
+use super::verdict_price::{self};
+use super::view::AccuracyView;
 use crate::reference::symbol;
 use crate::report::markdown::{Align, MarkdownTable, one_line};
 
 /// Errors that somebody may want to reach.
 const GOALS: [(f64, &str); 3] = [(1e-2, "1 %"), (1e-4, "1e-4"), (1e-8, "1e-8")];
-/// Errors as large as the number itself are in no line with smaller ones.
-const SENSELESS: f64 = 0.3;
-/// A run that is off by ten times the number has diverged; by how much says nothing and would only stretch an axis.
-pub(super) const DIVERGED: f64 = 10.0;
-/// Smallest error that a logarithmic axis shows: what is exact to the last digit stands here.
-pub(super) const LEAST: f64 = 1e-16;
-
-/// One experiment, measured.
-#[derive(Debug, Clone, PartialEq)]
-pub struct AccuracyView {
-    /// Its id.
-    pub id: String,
-    /// Its title.
-    pub title: String,
-    /// Where times were taken.
-    pub machine: Machine,
-    /// What was measured.
-    pub accuracy: Accuracy,
-    /// The verdicts on it.
-    pub entries: Vec<VerdictPrice>,
-}
-
 /// The page of one experiment, `picture` beside it.
 #[must_use]
 pub fn accuracy_page(view: &AccuracyView, picture: &str) -> String {
@@ -72,12 +52,6 @@ fn result(view: &AccuracyView) -> String {
         error(own.error),
         goals.join(", ")
     )
-}
-
-/// The fixed step that takes the least time of those within this error.
-pub(super) fn cheapest(steps: &[(f64, Over)], error: f64) -> Option<(f64, Over)> {
-    let within = steps.iter().filter(|(_, of)| of.error <= error);
-    within.min_by(|a, b| a.1.time.total_cmp(&b.1.time)).copied()
 }
 
 fn describe(machine: &Machine) -> String {
@@ -173,25 +147,12 @@ fn is_repeated(contender: Contender) -> bool {
     matches!(contender, Contender::EventDriven { .. }) && contender != Contender::EXACT
 }
 
-/// `event-driven, windows × 0.5`; `fixed step 10 µs`.
-pub(super) fn name(contender: Contender) -> String {
-    match contender {
-        Contender::EventDriven { window_factor: 1.0 } => "event-driven".into(),
-        Contender::EventDriven { window_factor } => format!("event-driven, windows × {window_factor}"),
-        Contender::FixedStep { time_step } => words::of_solver(&SolverChoice::FixedStep { time_step }.label()),
-    }
-}
-
 fn error(value: f64) -> String {
     match value {
         exact if exact < f64::EPSILON => "< 2e-16".into(),
         far if far > DIVERGED => "diverged".into(),
         value => format!("{value:.0e}"),
     }
-}
-
-pub(super) fn seconds(value: f64) -> String {
-    quantity(value, "s", 3)
 }
 
 /// The summary of all experiments that were measured.
@@ -265,52 +226,4 @@ fn row(view: &AccuracyView) -> Vec<String> {
     cells.push(next.map_or_else(String::new, |factor| format!("× {}", significant(factor, 2))));
     cells.push(format!("{} of {}", cases.len() - regular.len(), cases.len()));
     cells
-}
-
-/// Every fixed step that all of these cases were run with, s.
-pub(super) fn fixed_steps(cases: &[&CaseAccuracy]) -> Vec<(f64, Over)> {
-    let mut steps: Vec<(f64, Over)> = Vec::new();
-    for point in cases.iter().flat_map(|case| &case.points) {
-        if let Contender::FixedStep { time_step } = point.contender
-            && steps.iter().all(|(known, _)| *known != time_step)
-            && let Some(of) = over(cases, point.contender)
-        {
-            steps.push((time_step, of));
-        }
-    }
-    steps
-}
-
-/// The worst error of a contender over cases, and its time over all of them.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Over {
-    pub error: f64,
-    pub time: f64,
-}
-
-pub(super) fn over(cases: &[&CaseAccuracy], contender: Contender) -> Option<Over> {
-    let points: Vec<&Point> =
-        cases.iter().filter_map(|case| case.points.iter().find(|point| point.contender == contender)).collect();
-    (points.len() == cases.len() && !points.is_empty()).then(|| Over {
-        error: points.iter().map(|point| point.error).fold(0.0, f64::max),
-        time: points.iter().map(|point| point.times.median).sum(),
-    })
-}
-
-/// By how much the time grows when the error falls to a tenth: the slope of the straight line through log time over log error.
-fn next_digit(points: &[Over]) -> Option<f64> {
-    let points: Vec<[f64; 2]> = points
-        .iter()
-        .filter(|of| of.error > 0.0 && of.error < SENSELESS)
-        .map(|of| [libm::log10(of.error), libm::log10(of.time)])
-        .collect();
-    let count = points.len() as f64;
-    let mean = |i: usize| points.iter().map(|point| point[i]).sum::<f64>() / count;
-    let [x, y] = [mean(0), mean(1)];
-    let square: f64 = points.iter().map(|point| (point[0] - x) * (point[0] - x)).sum();
-    let product: f64 = points.iter().map(|point| (point[0] - x) * (point[1] - y)).sum();
-    let span =
-        points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [x, _]| [low.min(*x), high.max(*x)]);
-    // A slope over less than one digit says nothing.
-    (points.len() > 2 && span[1] - span[0] >= 1.0).then(|| libm::exp10(-product / square))
 }

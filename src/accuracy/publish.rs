@@ -6,9 +6,11 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use super::measured::{Accuracy, Contender};
-use super::page::{AccuracyView, DIVERGED, LEAST, accuracy_page, accuracy_summary, case_name};
+use super::over_cases::{DIVERGED, LEAST};
+use super::page::{accuracy_page, accuracy_summary, case_name};
 use super::scatter::scatter;
 use super::verdict_price::VerdictPrice;
+use super::view::AccuracyView;
 use crate::atomic::{self, FileError};
 use crate::experiment::Experiment;
 use crate::figure::{Beside, draw, work_precision};

@@ -2,7 +2,8 @@
 //! for every verdict; a line at the u_val of each number, from which on a run is accurate enough.
 
 use super::measured::Contender;
-use super::page::{AccuracyView, LEAST, Over, cheapest, fixed_steps, over};
+use super::over_cases::{LEAST, Over, cheapest, fixed_steps, over};
+use super::view::AccuracyView;
 use crate::experiment::{Axis, AxisScale, AxisUnit, Band, Drawing, FigureSpec, Joined, Level, Panel};
 use crate::figure::{FigureError, Picture, draw_table};
 use crate::table::{BASELINE, Column, Data, Table};

@@ -6,7 +6,7 @@ use crate::reference::{Comparison, Judged, Price, Verdict};
 use crate::text::number::{quantity, significant};
 use crate::text::words;
 
-use super::page::{Over, cheapest, fixed_steps, name, seconds};
+use super::over_cases::{Over, cheapest, fixed_steps, name, seconds};
 use crate::report::comparison::rests_on;
 use crate::report::markdown::{Align, MarkdownTable};
 

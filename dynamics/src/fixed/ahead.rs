@@ -6,8 +6,8 @@
 
 use super::propagator::Propagator;
 use super::schedule::Oscillator;
-use super::stretch::Watch;
 use super::vector::Vector;
+use super::watch::Watch;
 use crate::arithmetic::four::Four;
 use crate::arithmetic::lanes::WIDTH;
 

@@ -35,6 +35,7 @@ mod record;
 mod schedule;
 mod stretch;
 mod vector;
+mod watch;
 
 use std::rc::Rc;
 
@@ -54,8 +55,9 @@ use crate::system::{Contact, Drive, HybridSystem};
 use ahead::{AHEAD, Ahead};
 use propagator::{Layout, Propagator, lead};
 use schedule::{Oscillator, Schedule, StepTick};
-use stretch::{HalfCycle, Motion, Tally, Visited, Watch};
+use stretch::{HalfCycle, Motion, Tally, Visited};
 use vector::Vector;
+use watch::Watch;
 
 /// Propagators kept.
 const MOST_PROPAGATORS: usize = 1024;

@@ -4,6 +4,7 @@ use super::ahead::{AHEAD, Ahead, Forces, Foresight};
 use super::propagator::Propagator;
 use super::schedule::Oscillator;
 use super::vector::Vector;
+use super::watch::Watch;
 use crate::response::audit::Passed;
 use crate::response::extremes::Extremes;
 
@@ -36,18 +37,6 @@ pub(super) struct HalfCycle {
     count: f64,
     /// RMS of the last complete one, m/s².
     pub(super) last: f64,
-}
-
-/// What is measured: rows over the state.
-pub(super) struct Watch<V> {
-    /// Observed displacement, m, and velocity, m/s.
-    pub(super) displacement: V,
-    pub(super) velocity: V,
-    /// The same of all further observed points.
-    pub(super) more: Vec<[V; 2]>,
-    /// Displacement under the force, and its rate.
-    pub(super) forced: V,
-    pub(super) with_displacement: bool,
 }
 
 /// Sums over the states at the ends of steps.

@@ -12,7 +12,7 @@ use super::corrector::{At, Path};
 use super::newton::size;
 use super::point::BranchError;
 use super::shot::Shot;
-use super::special::{self, MEETS, Stretch};
+use super::stretch::{MEETS, Stretch, nearest};
 use crate::arithmetic::lagrange::{combined, weights};
 use crate::motion::End;
 use crate::system::HybridSystem;
@@ -68,7 +68,7 @@ pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
             apart = apart.min(OF_ROOM * (middle - stretch.places[0]).min(stretch.places[1] - middle));
         }
         if let Some((place, at)) = interpolated(path, stretch.base, middle, apart)? {
-            let off = special::nearest(&at, 1.0)?;
+            let off = nearest(&at, 1.0)?;
             if best.as_ref().is_none_or(|(least, ..)| off < *least) {
                 best = Some((off, place, at));
             }

@@ -55,6 +55,7 @@ mod section;
 mod shot;
 mod slowing;
 mod special;
+mod stretch;
 
 use crate::error::EngineError;
 use crate::motion::{End, Exponent, MotionKind, Multiplier, NEUTRAL};

@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 use super::corrector::{At, Path};
 use super::fork::{self, Fork};
 use super::point::{BranchError, Special};
+use super::stretch::{MEETS, Stretch, away, multipliers, nearest};
 use crate::motion::{Multiplier, NEUTRAL};
 use crate::system::HybridSystem;
 
@@ -14,8 +15,6 @@ const EVALUATIONS: usize = 60;
 const NARROW: f64 = 1e-4;
 /// Shares of the range that are one.
 const LOCATED: f64 = 1e-13;
-/// A multiplier is at 1 or −1 within this; two that meet there are known to the root of rounding.
-pub(super) const MEETS: f64 = 1e-4;
 /// A special point of one kind is the same one within this share of a step.
 const SAME: f64 = 1e-6;
 /// Halvings of a step in which a special point hides.
@@ -57,45 +56,10 @@ impl Test {
     }
 }
 
-/// How far the multiplier next to a real number is from it.
-pub(super) fn nearest<E>(at: &At, real: f64) -> Result<f64, BranchError<E>> {
-    Ok(multipliers(at)?.iter().fold(f64::INFINITY, |least, it| least.min(away(it, real))))
-}
-
-fn multipliers<E>(at: &At) -> Result<Vec<Multiplier>, BranchError<E>> {
-    Ok(at.shot.map.multipliers().map_err(super::OrbitError::from)?)
-}
-
 /// Moduli of the complex pairs, largest first.
 fn pairs(multipliers: &[Multiplier]) -> Vec<f64> {
     let complex = multipliers.iter().filter(|it| it.angle > 0.0 && it.angle < std::f64::consts::PI);
     complex.step_by(2).map(|it| it.modulus).collect()
-}
-
-/// Part of a step along a branch: the points at its ends, and their places along the tangent of the point that those between them are
-/// predicted from.
-#[derive(Clone, Copy)]
-pub(super) struct Stretch<'a> {
-    pub(super) base: &'a At,
-    /// Of that point along the step.
-    from: f64,
-    pub(super) places: [f64; 2],
-    pub(super) ends: [&'a At; 2],
-}
-
-impl<'a> Stretch<'a> {
-    /// A whole step.
-    pub(super) fn whole(from: &'a At, to: &'a At, step: f64) -> Self {
-        Self { base: from, from: 0.0, places: [0.0, step], ends: [from, to] }
-    }
-
-    pub(super) fn length(&self) -> f64 {
-        self.places[1] - self.places[0]
-    }
-
-    pub(super) fn place(&self, share: f64) -> f64 {
-        self.places[0] + self.length() * share
-    }
 }
 
 /// Special points with their places along a step; `None` as in [`between`].
@@ -226,12 +190,6 @@ fn explained<E>([before, after]: [Outside; 2], found: &[(f64, Special, At)]) -> 
         below += usize::from(real == Some(-1.0));
     }
     Ok(all == after.all && (above + after.above).is_multiple_of(2) && (below + after.below).is_multiple_of(2))
-}
-
-/// From a number on the real axis.
-fn away(it: &Multiplier, real: f64) -> f64 {
-    let (sin, cos) = libm::sincos(it.angle);
-    libm::hypot(it.modulus * cos - real, it.modulus * sin)
 }
 
 /// Of a complex one, from the unit circle.
