@@ -1,7 +1,7 @@
 //! YAML as a person writes it: a tree of nodes that know where they stand, and what readers of it share.
 //!
-//! text → [`Node`] → keys, words, quantities. A reader goes on after a mistake, so that those of a file come together ([`Problems`]), and
-//! the same reader describes all that it would take, as JSON Schema ([`At`]).
+//! text → `Node` → keys, words, quantities. A reader goes on after a mistake, so that those of a file come together ([`Problems`]), and
+//! the same reader describes all that it would take, as JSON Schema (`At`).
 
 mod at;
 mod choice;
