@@ -51,7 +51,7 @@ mod states;
 mod system;
 
 pub use arithmetic::matrix::{Matrix, dot};
-pub use budget::{Allowance, Exhausted, Limit, Overrun, in_words, interrupt, is_interrupted};
+pub use budget::{Allowance, Exhausted, Limit, Overrun, aside, in_words, interrupt, is_interrupted};
 pub use error::EngineError;
 pub use fixed::fixed_step;
 pub use flow::sums::Sums;

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::Request;
 use super::later::settled_later;
 use super::{EvaluateError, Measure, Settings, SolverChoice, Subject};
-use crate::dynamics::{Options, Response, Until};
+use crate::dynamics::{Options, Response, Until, aside};
 use crate::scene::{Scene, compile};
 
 /// Scenes whose runs are kept: those of a sweep over frequencies, or so.
@@ -65,7 +65,7 @@ impl References {
         if let Some((_, known)) = kept().iter().rev().find(|(known, _)| *known == question) {
             return Ok(Arc::clone(known));
         }
-        let references = Arc::new(question.answer()?);
+        let references = Arc::new(aside(|| question.answer())?);
         let mut kept = kept();
         if kept.len() == MOST_SCENES {
             kept.pop_front();
