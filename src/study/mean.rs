@@ -72,22 +72,10 @@ pub(super) fn mean(wanted: &[Measure], measures: &[Measure], ratio: MeanRatio, e
         }
         _ => of(index),
     });
-    let worst = |part: fn(&Proof) -> f64| each.iter().map(|one| part(&one.proof)).fold(0.0, f64::max);
+    let proofs: Vec<Proof> = each.iter().map(|one| one.proof).collect();
     Evaluated {
         measured: measured.collect(),
-        proof: Proof {
-            momentum_residual: worst(|proof| proof.momentum_residual),
-            energy_residual: worst(|proof| proof.energy_residual),
-            // One that does not close is enough.
-            residual_bound: each
-                .iter()
-                .filter(|one| !one.proof.is_balanced())
-                .map(|one| one.proof.residual_bound)
-                .fold(f64::INFINITY, f64::min),
-            events: each.iter().map(|one| one.proof.events).sum(),
-            smallest_margin: each.iter().map(|one| one.proof.smallest_margin).fold(f64::INFINITY, f64::min),
-            ties: each.iter().map(|one| one.proof.ties).sum(),
-        },
+        proof: Proof::of_several(&proofs),
         chaotic: each.iter().any(|one| one.chaotic),
         unknown: each.iter().find_map(|one| one.unknown.clone()),
         members: each.iter().map(|one| one.members).max().unwrap_or(1),

@@ -15,3 +15,8 @@ pub(crate) mod quadrature;
 pub(crate) mod schur;
 pub(crate) mod superposition;
 pub(crate) mod wide;
+
+/// The larger of two numbers, NaN if one of them is: where what is no number proves nothing.
+pub(crate) fn larger_or_nan(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
+}

@@ -9,6 +9,7 @@
 //!
 //! Both hold in chaotic runs too. They cannot show an event that was missed altogether; that is the search's certificate.
 
+use crate::arithmetic::larger_or_nan;
 use crate::arithmetic::matrix::dot;
 use crate::arithmetic::quadrature;
 use crate::budget;
@@ -284,7 +285,7 @@ impl Audit {
                     passed += share.abs() * (rate.abs() + face.abs());
                 }
             }
-            momentum = momentum.max(residual.abs() / passed.max(f64::MIN_POSITIVE));
+            momentum = larger_or_nan(momentum, residual.abs() / passed.max(f64::MIN_POSITIVE));
         }
         let residual =
             energy(system, end) - energy(system, begin) + all.dissipated + self.loss - self.impulse_work - all.work;
