@@ -19,6 +19,7 @@ use super::refusal::{Meant, Places, Refusal};
 use super::scene::ReadScene;
 use super::starts_reader::ReadStarts;
 use super::sweep::ReadSweep;
+use crate::text::name;
 use crate::yaml::word::word_of;
 
 /// Most runs of a whole experiment, ensembles not counted.
@@ -191,8 +192,8 @@ impl Checks<'_> {
 
     /// Energies are kept of cycles that are run.
     pub fn energies(&self, energies: Option<&EnergySpec>, settings: &Settings, at: Span) {
-        let cycles = settings.skip.saturating_add(settings.average);
-        if energies.is_some_and(|energies| energies.to_cycle > cycles) {
+        let cycles = settings.averaged().end();
+        if energies.is_some_and(|energies| u64::from(energies.to_cycle) > cycles) {
             self.findings.wrong::<()>(at, format!("energies are kept of the {cycles} cycles that are run"));
         }
     }
@@ -318,7 +319,7 @@ impl Checks<'_> {
 
     /// A line runs through points of one solver.
     pub fn lines(&self, figures: &[FigureSpec], cases: &[Case], at: Span) {
-        let joined = |panel: &Panel| !panel.by.iter().any(|column| column == "solver");
+        let joined = |panel: &Panel| !panel.by.iter().any(|column| column == name::SOLVER);
         let drawn =
             |figure: &FigureSpec| matches!(&figure.drawing, Drawing::Lines(panels) if panels.iter().any(joined));
         if cases.iter().any(|case| case.solvers.len() > 1) && figures.iter().any(drawn) {
@@ -574,7 +575,7 @@ fn steps(scene: &Scene, case: &Case, settings: &Settings) -> Result<(), StepErro
         if in_a_period(time_step) < 1.0 {
             return Err(StepError::LongerThanPeriod { time_step, period });
         }
-        let cycles = f64::from(settings.skip) + f64::from(settings.average);
+        let cycles = settings.averaged().end() as f64;
         if in_a_period(time_step) * cycles > MOST_STEPS {
             return Err(StepError::TooMany { time_step });
         }

@@ -16,6 +16,7 @@ use crate::measure::{
     CycleSpec, CycleValue, EnergySpec, Measure, PROOF, ShapeSpec, TraceSpec, energy_columns, of_another_damper,
     shape_columns, trace_columns, unit_of_list,
 };
+use crate::text::name;
 use crate::yaml::reader::unknown;
 use crate::yaml::schema::any_of;
 use crate::yaml::word::{from_word, word_of, words};
@@ -49,7 +50,7 @@ pub(crate) struct Lists {
 }
 
 /// Columns of words of tables of all kinds.
-const LABELS: [&str; 6] = ["sweep", "direction", "solver", "variant", "candidate", "stopped"];
+const LABELS: [&str; 6] = [name::SWEEP, name::DIRECTION, name::SOLVER, name::VARIANT, "candidate", "stopped"];
 
 impl Lists {
     /// Of what is kept, one at most.
@@ -118,8 +119,8 @@ impl Experiment {
 
 /// Columns that tell parts of a sweep apart.
 fn labels(cases: &[Case]) -> Vec<&'static str> {
-    let named = cases.iter().any(|case| !case.sweep.is_empty()).then_some("sweep");
-    let directed = cases.iter().any(|case| case.direction.is_some()).then_some("direction");
+    let named = cases.iter().any(|case| !case.sweep.is_empty()).then_some(name::SWEEP);
+    let directed = cases.iter().any(|case| case.direction.is_some()).then_some(name::DIRECTION);
     named.into_iter().chain(directed).collect()
 }
 
@@ -172,7 +173,7 @@ impl Columns {
             let role = if parameter.words().is_empty() { Role::Number } else { Role::Label };
             list.push((word_of(*parameter), role));
         }
-        let labels = labels(cases).into_iter().chain(["solver", "variant"]);
+        let labels = labels(cases).into_iter().chain([name::SOLVER, name::VARIANT]);
         list.extend(labels.map(|name| (name.into(), Role::Label)));
         for measure in *measures {
             let name = word_of(*measure);
@@ -180,10 +181,11 @@ impl Columns {
                 list.push((name, Role::Label));
                 continue;
             }
-            list.extend(["", "_num", "_spread"].map(|suffix| (format!("{name}{suffix}"), Role::Number)));
-        }
-        if let Some(maximise) = maximise {
-            list.push((maximise.column(), Role::Number));
+            list.extend(name::with_errors(&name).map(|name| (name, Role::Number)));
+            if let Some(maximise) = maximise.filter(|maximise| maximise.measure == *measure) {
+                let place = maximise.column();
+                list.extend([place.clone(), name::numerical(&place)].map(|name| (name, Role::Number)));
+            }
         }
         list.extend(PROOF.map(|column| (column.name.into(), Role::Number)));
         list.extend(lists.names.iter().map(|name| ((*name).into(), lists.role)));
@@ -203,10 +205,9 @@ impl Columns {
         let mut list: Vec<(String, Role)> = vec![("candidate".into(), Role::Label)];
         list.extend(["seed", "varied"].map(|name| (name.into(), Role::Number)));
         list.extend((1..=gaps).map(|gap| (format!("{}_{gap}", word_of(word)), Role::Number)));
-        list.extend(["solver", "variant"].map(|name| (name.into(), Role::Label)));
+        list.extend([name::SOLVER, name::VARIANT].map(|name| (name.into(), Role::Label)));
         for measure in measures {
-            let name = word_of(*measure);
-            list.extend(["", "_num", "_spread"].map(|suffix| (format!("{name}{suffix}"), Role::Number)));
+            list.extend(name::with_errors(&word_of(*measure)).map(|name| (name, Role::Number)));
         }
         list.extend(OUTCOME.map(|name| (name.into(), Role::Number)));
         list.push(("stopped".into(), Role::Label));
@@ -226,10 +227,9 @@ impl Columns {
             Measure::OF_AN_ORBIT
                 .map(|measure| (word_of(measure), if measure.is_name() { Role::Label } else { Role::Number })),
         );
-        list.extend(["solver", "variant"].map(|name| (name.into(), Role::Label)));
+        list.extend([name::SOLVER, name::VARIANT].map(|name| (name.into(), Role::Label)));
         for measure in measures {
-            let name = word_of(*measure);
-            list.extend(["", "_num", "_spread"].map(|suffix| (format!("{name}{suffix}"), Role::Number)));
+            list.extend(name::with_errors(&word_of(*measure)).map(|name| (name, Role::Number)));
         }
         list.extend(PROOF.map(|column| (column.name.into(), Role::Number)));
         Self { list, joined: Joined::AlongBranches }
@@ -244,7 +244,7 @@ impl Columns {
 
     /// The unit of a column of this name; `None` for one that is neither a parameter nor measured nor kept.
     pub fn unit(name: &str) -> Option<&'static str> {
-        let measured = ["_num", "_spread"].iter().find_map(|suffix| name.strip_suffix(suffix)).unwrap_or(name);
+        let measured = name::without_error(name);
         let parameter = from_word(name).map(Parameter::unit);
         parameter.or_else(|| from_word(measured).map(Measure::unit)).or_else(|| unit_of_list(name))
     }

@@ -22,6 +22,8 @@ use super::optimise::Optimise;
 use super::refined::Refinement;
 use super::starts::Starts;
 use super::stated::Unsourced;
+use crate::scene::Scene;
+use crate::text::json;
 
 /// An experiment: what is simulated, measured and drawn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -131,6 +133,11 @@ impl Experiment {
         if self.mean_over.is_empty() { Ok(vec![recipe.clone()]) } else { self.mean_over.iter().map(at).collect() }
     }
 
+    /// The scene of a case, the first of several that a mean is taken over; they hardly differ in what they take.
+    pub(crate) fn first_scene(&self, case: &Case, assumptions: &Assumptions) -> Option<Scene> {
+        self.recipes_of(case).ok()?.first()?.resolve(assumptions).ok()
+    }
+
     /// How a case is run and averaged under these assumptions.
     #[must_use]
     pub fn settings_under(&self, assumptions: &Assumptions) -> Settings {
@@ -209,55 +216,72 @@ impl Experiment {
     /// The whole meaning as JSON; equal meanings give equal JSON. Keys are sorted.
     #[must_use]
     pub fn canonical_json(&self) -> serde_json::Value {
-        json(self)
+        json::value(self)
     }
 
     /// What a simulation depends on: a changed title, caption or figure is not part of it.
     #[must_use]
     pub fn simulation_json(&self) -> serde_json::Value {
+        // Every field is named: a new one is part of it or is not.
+        let Self {
+            recipe,
+            cases,
+            swept,
+            settings,
+            transient,
+            maximise,
+            refined,
+            continued,
+            mean_over,
+            optimise,
+            orbit,
+            starts,
+            measures,
+            trace,
+            energies,
+            shape,
+            each_cycle,
+            tolerances,
+            // What it is called, what is drawn of it, and how it is carried out; solvers stand in the cases.
+            id: _,
+            title: _,
+            source: _,
+            about: _,
+            solvers: _,
+            limit: _,
+            moved: _,
+            figures: _,
+            without_source: _,
+        } = self;
         let mut meaning = serde_json::json!({
-            "recipe": json(&self.recipe),
-            "cases": json(&self.cases),
-            "swept": json(&self.swept),
-            "settings": json(&self.settings),
-            "maximise": json(&self.maximise),
-            "refined": json(&self.refined),
-            "measures": json(&self.measures),
-            "trace": json(&self.trace),
-            "energies": json(&self.energies),
-            "shape": json(&self.shape),
+            "recipe": json::value(recipe),
+            "cases": json::value(cases),
+            "swept": json::value(swept),
+            "settings": json::value(settings),
+            "maximise": json::value(maximise),
+            "refined": json::value(refined),
+            "measures": json::value(measures),
+            "trace": json::value(trace),
+            "energies": json::value(energies),
+            "shape": json::value(shape),
         });
-        if let Some(transient) = &self.transient {
-            meaning["transient"] = json(transient);
-        }
-        if !self.mean_over.is_empty() {
-            meaning["mean_over"] = json(&self.mean_over);
-        }
-        if !self.continued.is_empty() {
-            meaning["continued"] = json(&self.continued);
-        }
-        if let Some(each_cycle) = &self.each_cycle {
-            meaning["each_cycle"] = json(each_cycle);
-        }
-        if !self.tolerances.is_empty() {
-            meaning["tolerances"] = json(&self.tolerances);
-        }
-        if let Some(optimise) = &self.optimise {
-            meaning["optimise"] = json(optimise);
-        }
-        if let Some(orbit) = &self.orbit {
-            meaning["orbit"] = json(orbit);
-        }
-        if let Some(starts) = &self.starts {
-            meaning["starts"] = json(starts);
+        // Absent where it is not asked for.
+        let others = [
+            ("transient", (transient.is_some(), json::value(transient))),
+            ("mean_over", (!mean_over.is_empty(), json::value(mean_over))),
+            ("continued", (!continued.is_empty(), json::value(continued))),
+            ("each_cycle", (each_cycle.is_some(), json::value(each_cycle))),
+            ("tolerances", (!tolerances.is_empty(), json::value(tolerances))),
+            ("optimise", (optimise.is_some(), json::value(optimise))),
+            ("orbit", (orbit.is_some(), json::value(orbit))),
+            ("starts", (starts.is_some(), json::value(starts))),
+        ];
+        for (key, (is_asked_for, value)) in others {
+            if is_asked_for {
+                meaning[key] = value;
+            }
         }
         meaning
-    }
-
-    /// What the drawings depend on beside the table.
-    #[must_use]
-    pub fn figures_json(&self) -> serde_json::Value {
-        json(&self.figures)
     }
 }
 
@@ -286,11 +310,6 @@ impl Transient {
 
 fn is_usual(limit: &Limit) -> bool {
     *limit == Limit::default()
-}
-
-/// Plain data with text keys always has a JSON form.
-fn json(data: &impl Serialize) -> serde_json::Value {
-    serde_json::to_value(data).unwrap_or_else(|error| unreachable!("plain data has a JSON form: {error}"))
 }
 
 /// A scene with the values of a case.

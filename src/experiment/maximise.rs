@@ -37,16 +37,27 @@ impl SearchPoint {
     fn is_maximum(&self) -> bool {
         *self == Self::Maximum
     }
+
+    /// How the name of the column ends that says where the point lies.
+    fn ending(self) -> String {
+        format!("_at_{}", word_of(self))
+    }
+
+    /// True for the name of a column that says where a point lies.
+    pub(crate) fn is_place(column: &str) -> bool {
+        [Self::Maximum, Self::Onset].into_iter().any(|point| column.ends_with(&point.ending()))
+    }
 }
 
 impl Maximise {
     /// The column that says where the point lies: `force_ratio_at_maximum`.
     pub(crate) fn column(&self) -> String {
-        let point = match self.wanted {
-            SearchPoint::Maximum => "maximum",
-            SearchPoint::Onset => "onset",
-        };
-        format!("{}_at_{point}", word_of(self.over))
+        word_of(self.over) + &self.wanted.ending()
+    }
+
+    /// Points that are looked at, at most.
+    pub(crate) fn points(&self) -> u64 {
+        self.grid.len() as u64 + self.points_after_grid()
     }
 
     /// Points that are looked at after the grid, at most.

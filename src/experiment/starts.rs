@@ -265,4 +265,9 @@ impl Rank {
             Self::Other => "other",
         }
     }
+
+    /// That of a word in the table.
+    pub(crate) fn of_word(word: &str) -> Option<Self> {
+        [Self::Best, Self::Other].into_iter().find(|rank| rank.word() == word)
+    }
 }

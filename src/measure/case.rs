@@ -9,7 +9,7 @@ use super::reading::{Reading, rounding};
 use super::references::References;
 use super::shape::{self, Shape};
 use super::{EvaluateError, Evaluated, Measure, Measured, Rigour, Subject, TraceColumn};
-use crate::dynamics::{Averaged, EngineError, HybridSystem, MotionKind, Options, Proof, Response, StartState};
+use crate::dynamics::{EngineError, HybridSystem, MotionKind, Options, Proof, Response, StartState};
 use crate::measure::{NamedRows, Request, Settings, ShapeOf};
 use crate::scene::Scene;
 
@@ -108,8 +108,7 @@ impl Case<'_> {
             undamped,
             history,
             energies: energies.as_ref(),
-            skip: self.settings.skip,
-            average: self.settings.average,
+            given: self.settings.averaged(),
             mac: shape.as_ref().map(|shape| shape.mac),
             ..Reading::of_run(self.scene, response)
         };
@@ -126,9 +125,7 @@ impl Case<'_> {
             }
             lists.extend(shape.into_iter().flat_map(|shape| shape.columns));
             if let Some(each) = request.each_cycle {
-                let given = Averaged { first: u64::from(self.settings.skip), cycles: u64::from(self.settings.average) };
-                let averaged = response.settled.unwrap_or(given);
-                lists.push(each_cycle::column(*each, self.scene, response, averaged.first..averaged.end()));
+                lists.push(each_cycle::column(*each, self.scene, response, reading.averaged(response)));
             }
         }
         Ok(Read { values, lists })

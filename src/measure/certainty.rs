@@ -145,7 +145,7 @@ impl<'a> OwnRun<'a> {
         }
         // Of a twin that is no member of an ensemble nothing is read that has to be looked for along its motion.
         let beside = self.response.settling.take();
-        let mut alike = Options { kick: TWIN_KICK, beside, ..self.plain.clone() };
+        let mut alike = Options { beside, ..self.kicked(TWIN_KICK) };
         if self.members() < 2 {
             alike = Options { extremes: false, record_events: 0, cycle_rates: false, ..alike };
         }
@@ -163,6 +163,12 @@ impl<'a> OwnRun<'a> {
             (true, _) | (false, Rigour::Result) => self.by_second_accuracy(chaotic),
             (false, _) => Ok(Some(self.certain(self.roundings(), false))),
         }
+    }
+
+    /// Options of a run that starts beside it. One of which the last instant is read goes on as long.
+    fn kicked(&self, kick: f64) -> Options {
+        let trace = self.main.trace.filter(|_| self.case.request.any(Measure::is_of_the_end));
+        Options { kick, trace, ..self.plain.clone() }
     }
 
     /// Runs of an ensemble, at most.
@@ -271,7 +277,7 @@ impl<'a> OwnRun<'a> {
             count += 1;
             let step = f64::from(member / 2) * 2.0 / f64::from(members);
             let kick = ENSEMBLE_KICK * if member % 2 == 0 { step } else { -step };
-            let kicked = match neighbour(self.system, &Options { kick, ..self.plain.clone() }, &self.response)? {
+            let kicked = match neighbour(self.system, &self.kicked(kick), &self.response)? {
                 Ok(kicked) => kicked,
                 Err(why) => return self.alone(true, &why),
             };

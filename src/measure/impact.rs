@@ -4,6 +4,7 @@
 //! that follows it.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use super::Measure;
 use crate::dynamics::{Event, EventKind, Response};
@@ -22,9 +23,9 @@ struct Contact<'a> {
 }
 
 impl<'a> Impacts<'a> {
-    /// Of a run from its cycle `first` on.
-    pub(super) fn of(response: &'a Response, scene: &Scene, first: u64) -> Self {
-        let kept = |event: &&Event| event.cycle >= first && event.particle == 0;
+    /// In these cycles of a run.
+    pub(super) fn of(response: &'a Response, scene: &Scene, cycles: &Range<u64>) -> Self {
+        let kept = |event: &&Event| cycles.contains(&event.cycle) && event.particle == 0;
         Self { events: response.events.iter().filter(kept).collect(), period: scene.excitation.period() }
     }
 

@@ -4,6 +4,7 @@
 use super::energy::Energies;
 use super::{EnergySpec, Evaluated, ShapeOf, ShapeSpec, TraceColumn};
 use crate::dynamics::{Sample, SampledParticle};
+use crate::text::name;
 
 /// A column: its name, its unit, and its number.
 pub(super) struct Kept<F> {
@@ -170,7 +171,7 @@ pub const PROOF: [ProofColumn; 7] = [
     proof("smallest_margin", "m", ProofOf::Number(|row| row.proof.smallest_margin)),
     proof("ties", "", ProofOf::Count(|row| row.proof.ties)),
     proof("chaotic", "", ProofOf::Count(|row| row.chaotic as u64)),
-    proof("members", "", ProofOf::Count(|row| row.members as u64)),
+    proof(name::MEMBERS, "", ProofOf::Count(|row| row.members as u64)),
 ];
 
 #[cfg(test)]

@@ -325,6 +325,11 @@ impl Measure {
         all.iter().copied().filter(|other| other.needs_motion() && !other.is_name())
     }
 
+    /// Of the last instant of the run.
+    pub(super) fn is_of_the_end(self) -> bool {
+        self.facts().from == ReadOff::End
+    }
+
     /// Of the run itself, where others are means over an ensemble of kicked starts.
     pub(super) fn is_of_own_run(self) -> bool {
         self.needs_trace() || self.is_modal() || self.needs_multipliers()

@@ -7,7 +7,7 @@ use super::evaluate::rounded_subject;
 use super::reading::Reading;
 use super::undefined::in_range;
 use super::{EvaluateError, Evaluated, Measure, Measured, Request, Rigour, Subject, elasticity};
-use crate::dynamics::{HybridSystem, Options, Orbit, Response, StartState, event_driven};
+use crate::dynamics::{Averaged, HybridSystem, Options, Orbit, Response, StartState, event_driven};
 use crate::measure::Settings;
 use crate::scene::{Scene, compile};
 
@@ -40,8 +40,8 @@ pub fn measured_orbit(
     };
     let read = |response| -> Result<Vec<f64>, EvaluateError> {
         let undamped = undamped.as_ref();
-        let (mode, average) = (subject.mode, orbit.cycles);
-        let reading = Reading { mode, undamped, average, ..Reading::of_run(scene, response) };
+        let given = Averaged { first: 0, cycles: orbit.cycles.into() };
+        let reading = Reading { mode: subject.mode, undamped, given, ..Reading::of_run(scene, response) };
         measures.iter().map(|measure| reading.read(*measure)).collect()
     };
     let (values, others) = (read(&response)?, read(&again)?);

@@ -1,13 +1,14 @@
 //! Measures read off responses, and what rounding leaves of them.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use super::contact::contact_share;
 use super::energy::Energies;
 use super::history::History;
 use super::impact::Impacts;
 use super::{EvaluateError, Measure};
-use crate::dynamics::{EventKind, Motion, Observed, Response, Sums};
+use crate::dynamics::{Averaged, EventKind, Motion, Observed, Response, Sums};
 use crate::scene::{Excitation, Scene, Take};
 
 /// What there is to read measures of one run off.
@@ -20,10 +21,8 @@ pub(super) struct Reading<'a> {
     pub(super) undamped: Option<&'a Response>,
     pub(super) history: Option<History<'a>>,
     pub(super) energies: Option<&'a Energies>,
-    /// Cycles left out of the window.
-    pub(super) skip: u32,
-    /// Cycles of the window.
-    pub(super) average: u32,
+    /// The averaged cycles, of a run that is not to settle.
+    pub(super) given: Averaged,
     /// Modal assurance criterion of the shape, if there is one.
     pub(super) mac: Option<f64>,
 }
@@ -38,8 +37,7 @@ impl<'a> Reading<'a> {
             undamped: None,
             history: None,
             energies: None,
-            skip: 0,
-            average: 0,
+            given: Averaged { first: 0, cycles: 0 },
             mac: None,
         }
     }
@@ -113,20 +111,12 @@ impl Reading<'_> {
             | Measure::FloorRestitution
             | Measure::FloorContactTime
             | Measure::FloorReleaseTime
-            | Measure::ChatterEndTime => {
-                let first = response.settled.map_or(u64::from(self.skip), |settled| settled.first);
-                Impacts::of(response, self.scene, first).read(measure)
-            }
-            Measure::ContactShare => {
-                let cycles = response.settled.map_or_else(
-                    || u64::from(self.skip)..u64::from(self.skip + self.average),
-                    |settled| settled.first..settled.end(),
-                );
-                contact_share(response, self.scene, cycles)
-            }
+            | Measure::ChatterEndTime => Impacts::of(response, self.scene, &self.averaged(response)).read(measure),
+            Measure::ContactShare => contact_share(response, self.scene, self.averaged(response)),
             Measure::Settled => f64::from(u8::from(response.settled.is_some())),
             Measure::AveragedCycles => {
-                response.settled.map_or(f64::from(self.average), |settled| settled.cycles as f64)
+                let cycles = self.averaged(response);
+                (cycles.end - cycles.start) as f64
             }
             Measure::Motion
             | Measure::LargestMultiplier
@@ -151,6 +141,12 @@ impl Reading<'_> {
             | Measure::ModeCount
             | Measure::Mac => unreachable!("modal measures are read above"),
         })
+    }
+
+    /// The cycles that are averaged over. A run with a time history may go on beyond them.
+    pub(super) fn averaged(&self, response: &Response) -> Range<u64> {
+        let averaged = response.settled.unwrap_or(self.given);
+        averaged.first..averaged.end()
     }
 
     fn modal(&self, measure: Measure) -> Result<f64, EvaluateError> {

@@ -3,8 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Measure, Needs, Rigour};
-use crate::dynamics::{EngineError, HybridSystem, Options, Response, StartState, Until, event_driven, fixed_step};
+use crate::dynamics::{
+    Averaged, EngineError, HybridSystem, Options, Response, StartState, Until, event_driven, fixed_step,
+};
 use crate::scene::{Design, Scene};
+use crate::text::words::EVENT_DRIVEN;
 
 /// Which solver.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -24,7 +27,7 @@ impl SolverChoice {
     #[must_use]
     pub fn label(&self) -> String {
         match self {
-            Self::EventDriven => "event_driven".into(),
+            Self::EventDriven => EVENT_DRIVEN.into(),
             Self::FixedStep { time_step } => format!("fixed_step_{time_step:e}s"),
         }
     }
@@ -133,6 +136,14 @@ pub struct Settings {
     /// Cases that a number is the mean over; 0 of one that is measured in a case alone.
     #[serde(skip)]
     pub mean_of: u32,
+}
+
+impl Settings {
+    /// The cycles averaged over, of a run that is not to settle.
+    #[must_use]
+    pub fn averaged(&self) -> Averaged {
+        Averaged { first: self.skip.into(), cycles: self.average.into() }
+    }
 }
 
 /// The rows whose motion is named: that takes a third of a run, and the other rows are many.

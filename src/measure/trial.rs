@@ -64,8 +64,7 @@ impl<'a> Trial<'a> {
         let reading = Reading {
             mode: self.mode,
             undamped: Some(undamped),
-            skip: self.settings.skip,
-            average: self.settings.average,
+            given: self.settings.averaged(),
             energies: energies.as_ref(),
             ..Reading::of_run(&self.scene, response)
         };

@@ -54,7 +54,7 @@ fn of_scenes(experiment: &Experiment, assumptions: &Assumptions) -> Vec<(Cause, 
     let mut warnings: Vec<(Cause, String)> = Vec::new();
     let mut slowest: Option<(&Case, f64)> = None;
     for case in experiment.cases.iter().take_while(|_| begun.elapsed() <= PATIENCE) {
-        let Some(scene) = scene_of(experiment, case, assumptions) else { continue };
+        let Some(scene) = experiment.first_scene(case, assumptions) else { continue };
         for (cause, warning) in of_scene(experiment, &scene, &case.solvers) {
             if warnings.iter().all(|(known, _)| *known != cause) {
                 warnings.push((cause, of_case(case, warning)));
@@ -69,12 +69,6 @@ fn of_scenes(experiment: &Experiment, assumptions: &Assumptions) -> Vec<(Cause, 
     let left = slowest.and_then(|(case, decay)| Some((case, transient(experiment.settings.skip, decay)?)));
     warnings.extend(left.map(|(case, warning)| (Cause::Transient, of_case(case, warning))));
     warnings
-}
-
-/// The scene of a case, if it has one. The settings of a mean hardly differ in what they take.
-fn scene_of(experiment: &Experiment, case: &Case, assumptions: &Assumptions) -> Option<Scene> {
-    let recipe = experiment.recipe_of(case).ok()?;
-    experiment.recipes_in(&recipe).ok()?.first()?.resolve(assumptions).ok()
 }
 
 /// A warning with the case that it is about.
@@ -101,7 +95,7 @@ fn of_scene(experiment: &Experiment, scene: &Scene, solvers: &[SolverChoice]) ->
     if scene.is_at_rest() && experiment.measures.iter().any(|measure| measure.needs_undamped()) {
         warnings.push((Cause::Silence, "the excitation is zero: nothing moves, and every ratio is undefined".into()));
     }
-    let cycles = f64::from(experiment.settings.skip) + f64::from(experiment.settings.average);
+    let cycles = experiment.settings.averaged().end() as f64;
     for solver in solvers {
         let SolverChoice::FixedStep { time_step } = solver else { continue };
         let steps = cycles * scene.excitation.period() / time_step;

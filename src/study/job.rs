@@ -3,7 +3,7 @@
 use super::variant::Variant;
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::experiment::{AssumptionName, Case, Experiment};
+use crate::experiment::{AssumptionName, Case, Experiment, Maximise};
 use crate::measure::{Measure, SolverChoice};
 
 /// A row.
@@ -103,7 +103,7 @@ pub(super) fn evaluations(experiment: &Experiment, job: &Job) -> u64 {
         (None, None) => 1,
         (Some(maximise), None) => {
             // The point of the baseline is simulated once more, as a result.
-            maximise.grid.len() as u64 + maximise.points_after_grid() + u64::from(job.variant == 0)
+            maximise.points() + u64::from(job.variant == 0)
         }
     }
 }
@@ -111,9 +111,7 @@ pub(super) fn evaluations(experiment: &Experiment, job: &Job) -> u64 {
 /// Runs behind a row of the table, the members of an ensemble and the points of a search for gaps not counted.
 #[must_use]
 pub fn runs_of_a_row(experiment: &Experiment) -> u64 {
-    let points =
-        experiment.maximise.as_ref().map_or(1, |maximise| maximise.grid.len() as u64 + maximise.points_after_grid());
-    points * (experiment.mean_over.len() as u64).max(1)
+    experiment.maximise.as_ref().map_or(1, Maximise::points) * (experiment.mean_over.len() as u64).max(1)
 }
 
 /// True if the row's measures cannot be computed without a time history.
@@ -125,7 +123,7 @@ pub(super) fn measures_need_trace(measures: &[Measure]) -> bool {
 /// start on a long row.
 pub(super) fn cost(experiment: &Experiment, variants: &[Variant], job: &Job) -> f64 {
     let settings = &experiment.settings;
-    let cycles = f64::from(settings.skip) + f64::from(settings.average);
+    let cycles = settings.averaged().end() as f64;
     let steps_a_cycle = match job.solver {
         // An exact step between two events costs as much as some ten fixed steps, and there are a few in a cycle.
         SolverChoice::EventDriven => 50.0,

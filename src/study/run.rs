@@ -256,8 +256,7 @@ fn together(work: &Work<'_>) -> Vec<Units> {
     let Task { experiment, variants, .. } = work.task;
     let scene = |row: usize| {
         let Job { case, variant, .. } = work.jobs[row];
-        let recipe = experiment.recipe_of(&experiment.cases[case]).ok()?;
-        experiment.recipes_in(&recipe).ok()?.first()?.resolve(&variants[variant].assumptions).ok()
+        experiment.first_scene(&experiment.cases[case], &variants[variant].assumptions)
     };
     let mut all: Vec<Units> = Vec::new();
     let mut of_case: BTreeMap<usize, Vec<(Option<Scene>, usize)>> = BTreeMap::new();

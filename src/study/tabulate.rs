@@ -11,6 +11,7 @@ use super::variant::Variant;
 use crate::experiment::{Experiment, Parameter};
 use crate::measure::{Evaluated, Measure, Measured, PROOF, ProofOf, TraceColumn};
 use crate::table::{Column, Data, RowFingerprint, Table};
+use crate::text::name;
 use crate::text::words;
 
 /// What came of a row.
@@ -44,14 +45,14 @@ pub(super) fn table(
     }
     let texts = |cell: &dyn Fn(usize) -> String| Data::Text((0..jobs.len()).map(cell).collect());
     if experiment.cases.iter().any(|case| !case.sweep.is_empty()) {
-        columns.push(Column::new("sweep", texts(&|row| experiment.cases[jobs[row].case].sweep.clone())));
+        columns.push(Column::new(name::SWEEP, texts(&|row| experiment.cases[jobs[row].case].sweep.clone())));
     }
     if experiment.cases.iter().any(|case| case.direction.is_some()) {
         let direction = |row: usize| experiment.cases[jobs[row].case].direction.as_ref().map(words::of_key);
-        columns.push(Column::new("direction", texts(&|row| direction(row).unwrap_or_default())));
+        columns.push(Column::new(name::DIRECTION, texts(&|row| direction(row).unwrap_or_default())));
     }
-    columns.push(Column::new("solver", texts(&|row| jobs[row].solver.label())));
-    columns.push(Column::new("variant", texts(&|row| variants[jobs[row].variant].label.clone())));
+    columns.push(Column::new(name::SOLVER, texts(&|row| jobs[row].solver.label())));
+    columns.push(Column::new(name::VARIANT, texts(&|row| variants[jobs[row].variant].label.clone())));
 
     let floats = |cell: &dyn Fn(&Row) -> f64| {
         Data::Float(outcomes.iter().map(|outcome| outcome.as_ref().map_or(f64::NAN, cell)).collect())
@@ -69,50 +70,58 @@ pub(super) fn table(
         let of = |part: fn(&Measured) -> f64| floats(&|row| row.evaluated.measured.get(index).map_or(f64::NAN, part));
         columns.extend(measured(*measure, of));
         if let Some(maximise) = experiment.maximise.as_ref().filter(|maximise| maximise.measure == *measure) {
-            let name = maximise.column();
+            let column = maximise.column();
             let place = |part: fn(&Place) -> f64| floats(&|row| row.place.as_ref().map_or(f64::NAN, part));
             let unit = maximise.over.unit();
-            columns.push(Column::new(&name, place(|p| p.at)).with_unit(unit).with_symbol(maximise.over.symbol()));
-            columns.push(Column::new(format!("{name}_num"), place(|p| p.within)).with_unit(unit));
+            let within = Column::new(name::numerical(&column), place(|p| p.within)).with_unit(unit);
+            columns.push(Column::new(column, place(|p| p.at)).with_unit(unit).with_symbol(maximise.over.symbol()));
+            columns.push(within);
         }
     }
     let evaluated: Vec<Option<&Evaluated>> =
         outcomes.iter().map(|outcome| outcome.as_ref().ok().map(|row| &row.evaluated)).collect();
-    let audited = audited(&evaluated, |row| jobs[row].is_audited());
-    let [momentum, energy, others @ ..] = proof(&evaluated, &audited);
-    columns.extend([momentum, energy]);
-    columns.extend(doubt::residual_bounds(&audited));
-    columns.extend(others);
-    columns.push(Column::new(
-        "failure",
-        texts(&|row| outcomes[row].as_ref().err().map(ToString::to_string).unwrap_or_default()),
-    ));
-    columns.extend(doubt::undefined(experiment, evaluated.iter().copied()));
-    columns.extend(doubt::unknown(evaluated.iter().copied()));
+    let failure = |row: usize| outcomes[row].as_ref().err().map(ToString::to_string).unwrap_or_default();
+    columns.extend(trust(experiment, &evaluated, |row| jobs[row].is_audited(), texts(&failure)));
     columns.extend(histories(experiment, jobs, outcomes));
     Table { columns, metadata, fingerprints }
 }
 
 /// A measure with its errors.
 pub(super) fn measured(measure: Measure, of: impl Fn(fn(&Measured) -> f64) -> Data) -> [Column; 3] {
-    let (name, unit) = (words::of_key(&measure), measure.unit());
+    let ([value, numerical, spread], unit) = (name::with_errors(&words::of_key(&measure)), measure.unit());
     [
-        Column::new(&name, of(|it| it.value)).with_unit(unit).with_symbol(measure.symbol()),
-        Column::new(format!("{name}_num"), of(|it| it.numerical)).with_unit(unit),
-        Column::new(format!("{name}_spread"), of(|it| it.spread)).with_unit(unit),
+        Column::new(value, of(|it| it.value)).with_unit(unit).with_symbol(measure.symbol()),
+        Column::new(numerical, of(|it| it.numerical)).with_unit(unit),
+        Column::new(spread, of(|it| it.spread)).with_unit(unit),
     ]
 }
 
+/// How far rows are to be trusted: what proves them, of those that are audited with their balances, and why a row has failed, which of its
+/// numbers are undefined, and what is unknown of it.
+pub(super) fn trust(
+    experiment: &Experiment,
+    rows: &[Option<&Evaluated>],
+    is_audited: impl Fn(usize) -> bool,
+    failures: Data,
+) -> Vec<Column> {
+    let audited = audited(rows, is_audited);
+    let [momentum, energy, others @ ..] = proof(rows, &audited);
+    let mut columns = vec![momentum, energy];
+    columns.extend(doubt::residual_bounds(&audited));
+    columns.extend(others);
+    columns.push(Column::new(name::FAILURE, failures));
+    columns.extend(doubt::undefined(experiment, rows.iter().copied()));
+    columns.extend(doubt::unknown(rows.iter().copied()));
+    columns
+}
+
 /// Of these rows those that a run stands behind, and nothing in the place of all others.
-pub(super) fn audited<'a>(
-    rows: &[Option<&'a Evaluated>],
-    is_one: impl Fn(usize) -> bool,
-) -> Vec<Option<&'a Evaluated>> {
+fn audited<'a>(rows: &[Option<&'a Evaluated>], is_one: impl Fn(usize) -> bool) -> Vec<Option<&'a Evaluated>> {
     rows.iter().enumerate().map(|(row, it)| it.filter(|it| it.members > 0 && is_one(row))).collect()
 }
 
 /// What proves the rows, of which some are audited, in columns; what a row does not have is NaN, or 0 of a count.
-pub(super) fn proof(rows: &[Option<&Evaluated>], audited: &[Option<&Evaluated>]) -> [Column; PROOF.len()] {
+fn proof(rows: &[Option<&Evaluated>], audited: &[Option<&Evaluated>]) -> [Column; PROOF.len()] {
     let numbers = |rows: &[Option<&Evaluated>], of: fn(&Evaluated) -> f64| {
         Data::Float(rows.iter().map(|row| row.map_or(f64::NAN, of)).collect())
     };

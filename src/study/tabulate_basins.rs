@@ -12,6 +12,7 @@ use super::untabulate::Cells;
 use super::variant::Variant;
 use crate::experiment::{BasinColumn, Experiment, Rank, Starts};
 use crate::table::{Column, Data, RowFingerprint, Table};
+use crate::text::name;
 
 /// Standard deviations of the interval that readers are shown: 95 %.
 const WIDE: f64 = 1.96;
@@ -100,7 +101,7 @@ pub(super) fn table(
         };
         Column::new(column.name(), data)
     });
-    let at = table.columns.iter().position(|column| column.name == "solver").unwrap_or(0);
+    let at = table.columns.iter().position(|column| column.name == name::SOLVER).unwrap_or(0);
     table.columns.splice(at..at, columns);
     table
 }
@@ -113,7 +114,7 @@ pub(super) fn read(experiment: &Experiment, table: &Table) -> Option<Vec<BasinRo
     let differences = table.floats(BasinColumn::RmsDifference.name())?;
     let Data::Int(starts) = &table.column(BasinColumn::Starts.name())?.data else { return None };
     let row = |row: usize| {
-        let rank = [Rank::Best, Rank::Other].into_iter().find(|rank| rank.word() == ranks[row])?;
+        let rank = Rank::of_word(&ranks[row])?;
         let basin = Basin {
             name: names[row].clone(),
             rank,

@@ -2,15 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use super::doubt;
 use super::failures::Failures;
 use super::row_failure::RowFailure;
-use super::tabulate::{measured, proof};
+use super::tabulate::{measured, trust};
 use super::variant::Variant;
 use crate::dynamics::{Orbit, Special};
 use crate::experiment::{BranchColumn, Continuation, Experiment, Stability};
 use crate::measure::{Evaluated, Measure, Measured, SolverChoice};
 use crate::table::{Column, Data, Table};
+use crate::text::name;
 use crate::text::words;
 
 /// A point of a branch, or what stands in the place of a branch that could not begin.
@@ -105,8 +105,8 @@ pub(super) fn table(
         let data = floats(&|row| row.of_orbit(measure));
         Column::new(name, data).with_unit(measure.unit()).with_symbol(measure.symbol())
     }));
-    columns.push(Column::new("solver", texts(&|_| SolverChoice::EventDriven.label())));
-    columns.push(Column::new("variant", texts(&|row| variants[row.variant].label.clone())));
+    columns.push(Column::new(name::SOLVER, texts(&|_| SolverChoice::EventDriven.label())));
+    columns.push(Column::new(name::VARIANT, texts(&|row| variants[row.variant].label.clone())));
     for (index, measure) in experiment.measures.iter().enumerate() {
         let of = |part: fn(&Measured) -> f64| {
             floats(&|row| row.measured.as_ref().map_or(f64::NAN, |it| it.measured.get(index).map_or(f64::NAN, part)))
@@ -114,10 +114,8 @@ pub(super) fn table(
         columns.extend(measured(*measure, of));
     }
     let evaluated: Vec<Option<&Evaluated>> = rows.iter().map(|row| row.measured.as_ref().ok()).collect();
+    let failures = texts(&|row| row.failure().map(ToString::to_string).unwrap_or_default());
     // Orbits are audited under all assumptions.
-    columns.extend(proof(&evaluated, &evaluated));
-    columns.extend(doubt::residual_bounds(&evaluated));
-    columns.push(Column::new("failure", texts(&|row| row.failure().map(ToString::to_string).unwrap_or_default())));
-    columns.extend(doubt::undefined(experiment, evaluated.iter().copied()));
+    columns.extend(trust(experiment, &evaluated, |_| true, failures));
     Table { columns, metadata, fingerprints: Vec::new() }
 }

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use super::doubt;
 use super::failures::Failures;
 use super::row_failure::RowFailure;
 use super::tabulate;
@@ -10,6 +9,7 @@ use super::variant::Variant;
 use crate::experiment::{Experiment, GapWord, Goal, Optimise};
 use crate::measure::{Evaluated, Measured, SolverChoice};
 use crate::table::{Column, Data, Table};
+use crate::text::name;
 use crate::text::words;
 
 /// A candidate, or a section of the landscape through one.
@@ -109,8 +109,9 @@ pub(super) fn table(
         let name = format!("{}_{}", words::of_key(&optimise.gaps), gap + 1);
         floats(&name, &|it| it.gaps.get(gap).copied().unwrap_or(f64::NAN)).with_unit(unit(optimise.gaps))
     }));
-    columns.push(texts("solver", &|_| solver.label()));
-    columns.push(texts("variant", &|it| variants.get(it.variant).map_or_else(String::new, |one| one.label.clone())));
+    columns.push(texts(name::SOLVER, &|_| solver.label()));
+    columns
+        .push(texts(name::VARIANT, &|it| variants.get(it.variant).map_or_else(String::new, |one| one.label.clone())));
     for (index, measure) in experiment.measures.iter().enumerate() {
         let of =
             |part: fn(&Measured) -> f64| Data::Float(candidates.iter().map(|it| part(&it.measured(index))).collect());
@@ -119,11 +120,8 @@ pub(super) fn table(
     columns.extend(outcome(experiment, optimise, candidates));
     columns.push(texts("stopped", &|it| it.stopped.clone()));
     let evaluated: Vec<Option<&Evaluated>> = candidates.iter().map(|it| it.outcome.as_ref().ok()).collect();
-    let audited = tabulate::audited(&evaluated, |row| candidates[row].variant == 0);
-    columns.extend(tabulate::proof(&evaluated, &audited));
-    columns.extend(doubt::residual_bounds(&audited));
-    columns.push(texts("failure", &|it| it.failure()));
-    columns.extend(doubt::unknown(evaluated.iter().copied()));
+    let failures = Data::Text(candidates.iter().map(Candidate::failure).collect());
+    columns.extend(tabulate::trust(experiment, &evaluated, |row| candidates[row].variant == 0, failures));
     columns.extend(lists(optimise, candidates));
     Table { columns, metadata, ..Table::default() }
 }

@@ -1,6 +1,7 @@
 //! Building a table and reading from it in memory.
 
 use super::{Column, Data, Table};
+use crate::text::name;
 
 /// What is wrong with a table as such.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -151,13 +152,13 @@ impl Table {
     /// True if the run of this row has failed.
     #[must_use]
     pub fn has_failed(&self, row: usize) -> bool {
-        self.texts("failure").and_then(|reasons| reasons.get(row)).is_some_and(|reason| !reason.is_empty())
+        self.texts(name::FAILURE).and_then(|reasons| reasons.get(row)).is_some_and(|reason| !reason.is_empty())
     }
 
     /// True if the run of any row has failed.
     #[must_use]
     pub fn has_failures(&self) -> bool {
-        self.texts("failure").is_some_and(|reasons| reasons.iter().any(|reason| !reason.is_empty()))
+        self.texts(name::FAILURE).is_some_and(|reasons| reasons.iter().any(|reason| !reason.is_empty()))
     }
 
     /// The time histories of a list column, one per row.
@@ -187,13 +188,16 @@ impl Table {
 
     /// Whether no assumption is moved in a row; so in a table that knows none.
     pub(crate) fn is_baseline(&self, row: usize) -> bool {
-        self.texts("variant").and_then(|variants| variants.get(row)).is_none_or(|variant| variant == super::BASELINE)
+        self.texts(name::VARIANT)
+            .and_then(|variants| variants.get(row))
+            .is_none_or(|variant| variant == super::BASELINE)
     }
 
-    /// The rows computed with the assumptions as the file gives them (`variant == baseline`).
+    /// The rows computed with the assumptions as the file gives them; all of a table that knows none.
     #[must_use]
     pub fn baseline(&self) -> Self {
-        self.select(&self.rows_where("variant", super::BASELINE))
+        let rows: Vec<usize> = (0..self.rows()).filter(|row| self.is_baseline(*row)).collect();
+        self.select(&rows)
     }
 
     /// Checks that all columns have the same length and each its own name, and that fingerprints belong to rows.

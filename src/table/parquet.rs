@@ -22,6 +22,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Column, Data, Table, TableError, fingerprint};
 use crate::atomic::{self, FileError, from_here};
+use crate::text::json;
 
 /// Raised when the content of the `shotdamp` key is to be read differently.
 const FORMAT: u32 = 1;
@@ -124,8 +125,7 @@ pub fn to_bytes(table: &Table) -> Result<Vec<u8>, ParquetError> {
             .collect(),
         provenance: table.metadata.clone(),
     };
-    let about = serde_json::to_string(&about).map_err(|error| refuse(error.to_string()))?;
-    let attributes = serde_json::to_string(&Attributes::of(table)).map_err(|error| refuse(error.to_string()))?;
+    let (about, attributes) = (json::line(&about), json::line(&Attributes::of(table)));
     let open_seal = format!("{}{}", String::from_utf8_lossy(SEAL_MARK), "0".repeat(SEAL_DIGITS));
     let columns = table.columns.iter().map(|column| to_series(column).into()).collect();
     let mut frame = pl::DataFrame::new(table.rows(), columns).map_err(|error| refuse(error.to_string()))?;

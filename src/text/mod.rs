@@ -2,6 +2,9 @@
 //! reports and on the console.
 
 pub mod braces;
+#[cfg(feature = "pipeline")]
+pub(crate) mod json;
+pub mod name;
 pub mod number;
 pub mod utf8;
 pub mod words;

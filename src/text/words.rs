@@ -46,13 +46,16 @@ pub fn of_column(name: &str) -> String {
     .to_owned()
 }
 
+/// The label of the exact solver in tables, and its word in YAML.
+pub const EVENT_DRIVEN: &str = "event_driven";
+
 /// A solver as its label in tables names it: `event-driven`, `fixed step 10 µs`.
 #[must_use]
 pub fn of_solver(label: &str) -> String {
     let step = label.strip_prefix("fixed_step_").and_then(|rest| rest.strip_suffix('s'));
     match step.and_then(|seconds| seconds.parse::<f64>().ok()) {
         Some(seconds) => format!("fixed step {}", number::quantity(seconds, "s", 3)),
-        None => label.replace("event_driven", "event-driven").replace('_', " "),
+        None => label.replace(EVENT_DRIVEN, "event-driven").replace('_', " "),
     }
 }
 

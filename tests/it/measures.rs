@@ -190,6 +190,21 @@ fn the_first_impulse_finds_the_energy_that_the_run_started_with() {
 }
 
 #[test]
+fn events_of_a_time_history_beyond_the_averaged_cycles_are_not_measured() {
+    let floor = "{rigid: {restitution: 0.6}}";
+    let measured = |trace: &str| {
+        let rest = format!(
+            "run: {{skip: 2 cycles, average: 4 cycles}}\n{trace}measure: [floor_impact_time, floor_impact_speed, \
+             floor_impact_phase, floor_impact_interval, contact_share, floor_impacts]"
+        );
+        values(&evaluated(&experiment(MASS, &on_mass(floor, IMPULSES), &rest), SolverChoice::EventDriven))
+    };
+    let within = measured("");
+    assert!(within.iter().all(|value| value.is_finite()), "{within:?}");
+    assert_eq!(measured("trace: {from: 0 cycles, to: 40 cycles, samples_per_cycle: 10}\n"), within);
+}
+
+#[test]
 fn a_compression_is_uncertain_by_what_lies_between_its_samples() {
     let of = |samples: u32| {
         let rest = format!(

@@ -211,6 +211,12 @@ impl AssumptionEntry {
 }
 
 impl AssumptionSheet {
+    /// The ids of the entries of references that an assumption was fitted to.
+    #[must_use]
+    pub fn fitted(&self) -> BTreeSet<String> {
+        self.iter().flat_map(|(_, entry)| entry.fitted_to.iter().cloned()).collect()
+    }
+
     /// The entries in the order of the file.
     pub fn iter(&self) -> impl Iterator<Item = (&AssumptionName, &AssumptionEntry)> {
         self.entries.iter().map(|(name, entry)| (name, entry.as_ref()))
