@@ -18,6 +18,8 @@ use crate::measure::SolverChoice;
 use crate::reference::Judged;
 use crate::study::{Layout, Machine, runs_of_a_row};
 use crate::table::{BASELINE, Column, Data, Table};
+use crate::text::json;
+use crate::text::name;
 
 /// The record, within the study.
 const RECORD: &str = "reports/accuracy.json";
@@ -60,10 +62,8 @@ pub fn keep_measured(
     accuracy: Accuracy,
 ) -> Result<(), FileError> {
     record.insert(experiment.id.to_string(), Measured { machine: Machine::here(), accuracy });
-    let lines: Vec<String> = record
-        .iter()
-        .map(|(id, measured)| format!("\"{id}\": {}", serde_json::to_string(measured).unwrap_or_default()))
-        .collect();
+    let lines: Vec<String> =
+        record.iter().map(|(id, measured)| format!("\"{id}\": {}", json::line(measured))).collect();
     atomic::write(&layout.path(RECORD), format!("{{\n{}\n}}\n", lines.join(",\n")).as_bytes())
 }
 
@@ -136,8 +136,8 @@ fn table(accuracy: &Accuracy) -> Table {
     let texts = |name: &str, data: Vec<String>| Column::new(name, Data::Text(data));
     Table {
         columns: vec![
-            texts("variant", points().map(|_| BASELINE.into()).collect()),
-            texts("solver", points().map(|(_, point)| solver(point.contender)).collect()),
+            texts(name::VARIANT, points().map(|_| BASELINE.into()).collect()),
+            texts(name::SOLVER, points().map(|(_, point)| solver(point.contender)).collect()),
             texts("case", points().map(|(number, _)| case_name(&accuracy.cases[number], number)).collect()),
             floats("time", "s", points().map(|(_, point)| point.times.median).collect()),
             floats("error", "", points().map(|(_, point)| shown(point.error)).collect()),

@@ -7,6 +7,7 @@ use super::view::AccuracyView;
 use crate::experiment::{Axis, AxisScale, AxisUnit, Band, Drawing, FigureSpec, Joined, Level, Panel};
 use crate::figure::{FigureError, Picture, draw_table};
 use crate::table::{BASELINE, Column, Data, Table};
+use crate::text::name;
 use crate::text::number::significant;
 use crate::text::words::counted;
 
@@ -104,7 +105,7 @@ pub(super) fn scatter(views: &[AccuracyView]) -> Result<Picture, FigureError> {
     let texts = |name: &str, cells: Vec<String>| Column::new(name, Data::Text(cells));
     let table = Table {
         columns: vec![
-            texts("variant", vec![BASELINE.into(); kinds.len()]),
+            texts(name::VARIANT, vec![BASELINE.into(); kinds.len()]),
             texts("kind", kinds.iter().map(|(kind, _)| (*kind).into()).collect()),
             list("time", "s", |run| run.time),
             list("error", "", |run| run.error),

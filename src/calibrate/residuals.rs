@@ -15,6 +15,7 @@ use crate::experiment::{Experiment, Residual, curves};
 use crate::reference::{Entry, Found, TableState, Tables};
 use crate::study::{Evaluate, Event, EventHandler, RunError, fingerprint, runs_of_a_row};
 use crate::table::BASELINE;
+use crate::text::json;
 
 /// What rounding may leave of a bound.
 const ROUNDING: f64 = 1e-9;
@@ -72,8 +73,8 @@ impl<'a, E: Evaluate> Residuals<'a, E> {
                 fingerprint(&serde_json::json!([
                     SOLVER_VERSION,
                     format!("{kind:?}"),
-                    serde_json::to_value(&entry.check).unwrap_or_default(),
-                    serde_json::to_value(&entry.rows).unwrap_or_default(),
+                    json::value(&entry.check),
+                    json::value(&entry.rows),
                     rows.collect::<Vec<_>>(),
                 ]))
             })

@@ -4,6 +4,8 @@ use crate::experiment::{Case, Experiment, ParameterValue, curves};
 use crate::measure::{Measure, SolverChoice};
 use crate::reference::{Entry, Reading, Selection};
 use crate::table::Data;
+use crate::text::json;
+use crate::text::name;
 use crate::text::words;
 
 /// Points of a line to either side of a value between two of them: what an interpolation, and the refinement of the line
@@ -24,9 +26,7 @@ impl Wanted {
     pub(super) fn add(&mut self, entry: &Entry, home: &str, id: &str) {
         self.readings.extend(entry.readings(home).into_iter().filter(|reading| reading.experiment == id));
         self.every_solver |= entry.names_solver();
-        for part in [serde_json::to_string(&entry.check), serde_json::to_string(&entry.rows)] {
-            self.words += &part.unwrap_or_default();
-        }
+        self.words += &(json::line(&entry.check) + &json::line(&entry.rows));
     }
 
     /// The experiment with these rows and measures only, and without the searches of an optimisation: gaps that the file names are
@@ -110,9 +110,9 @@ impl Wanted {
 fn admits(rows: &Selection, case: &Case, solver: Option<SolverChoice>) -> bool {
     rows.0.iter().all(|(column, allowed)| {
         let cell = match column.as_str() {
-            "sweep" => Some(Data::Text(vec![case.sweep.clone()])),
-            "direction" => Some(Data::Text(vec![case.direction.as_ref().map(words::of_key).unwrap_or_default()])),
-            "solver" => solver.map(|solver| Data::Text(vec![solver.label()])),
+            name::SWEEP => Some(Data::Text(vec![case.sweep.clone()])),
+            name::DIRECTION => Some(Data::Text(vec![case.direction.as_ref().map(words::of_key).unwrap_or_default()])),
+            name::SOLVER => solver.map(|solver| Data::Text(vec![solver.label()])),
             name => cell(case, name),
         };
         cell.is_none_or(|cell| allowed.admits(&cell, 0))

@@ -54,7 +54,7 @@ fn tried(study: &Study, judged: &Judged, common: &Args) -> Result<Vec<Trial>, Cl
     let experiments: Vec<&Experiment> = study.items.iter().map(|item| &item.source.experiment).collect();
     let asked = (judged.experiment.as_str(), entry);
     let in_force = study.sheet.assumptions();
-    let fitted = study.fitted().contains(&judged.id);
+    let fitted = study.sheet.fitted().contains(&judged.id);
     let mut trials = Vec::new();
     // As many at once as there are threads: each portion ends with a line, and outlasts an interrupt of the next.
     for portion in moves.chunks(common.workers()) {

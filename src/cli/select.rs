@@ -8,6 +8,7 @@ use super::error::CliError;
 use super::exit::Exit;
 use crate::atomic::place_of;
 use crate::report::Judgement;
+use crate::study::FileKind;
 use crate::study::{
     ASSUMPTIONS, Item, Layout, Refused, STUDY, Snapshot, State, Study, Summary, Texts, folder_of, stem,
 };
@@ -26,7 +27,7 @@ pub(super) fn layout(root: Option<&Path>) -> Result<Layout, CliError> {
 /// Puts ids in the place of paths to experiments and calibrations, as a shell completes them: `experiments/ch3/ch3-gap.yaml`, seen
 /// from here or from the folder of the study.
 pub(super) fn name_files(layout: &Layout, command: &mut Command) {
-    let experiments = |named: &mut String| name_file(layout, "experiments", named);
+    let experiments = |named: &mut String| name_file(layout, FileKind::Experiment.folder(), named);
     match command {
         Command::Run(RunArgs { choice, .. })
         | Command::Gather(GatherArgs { choice, .. })
@@ -35,7 +36,7 @@ pub(super) fn name_files(layout: &Layout, command: &mut Command) {
         | Command::Check(CheckArgs { choice, .. }) => choice.patterns.iter_mut().for_each(experiments),
         Command::Accuracy(accuracy) => accuracy.patterns.iter_mut().for_each(experiments),
         Command::Show { id } | Command::Effects { id, .. } => experiments(id),
-        Command::Calibrate(calibrate) => name_file(layout, "calibrations", &mut calibrate.id),
+        Command::Calibrate(calibrate) => name_file(layout, FileKind::Calibration.folder(), &mut calibrate.id),
         Command::Report(_)
         | Command::List
         | Command::Diff(_)
@@ -200,13 +201,13 @@ impl<'a> Chosen<'a> {
 
     /// What files with mistakes leave out, a line each kind; nothing where there are none.
     pub fn left_out(&self) -> String {
-        let of = |folder: &str| -> Vec<&str> {
-            let files = self.unread.iter().map(|one| one.file()).filter(|file| *file != ASSUMPTIONS);
-            files.filter(|file| file.starts_with(folder)).map(stem).collect()
+        let of = |kind: FileKind| -> Vec<&str> {
+            let files = self.unread.iter().map(|one| one.file());
+            files.filter(|file| FileKind::of(file) == Some(kind)).map(stem).collect()
         };
         // A name in it that names nothing leaves no experiment out.
         let blind = self.count() == 0 && self.unread.iter().any(|unread| unread.file() == ASSUMPTIONS);
-        let (experiments, references) = (of("experiments/"), of("reference/"));
+        let (experiments, references) = (of(FileKind::Experiment), of(FileKind::Reference));
         let mut text = String::new();
         if blind {
             text += &format!("Left out: every experiment, because {ASSUMPTIONS} has mistakes.\n");

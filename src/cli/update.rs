@@ -12,6 +12,7 @@ use super::select::{Found, choose, matched};
 use super::simulate::{How, Ran, held, print_failures, simulate};
 use crate::atomic::{check_writable, from_here};
 use crate::report::{Elsewhere, INDEX, Judgement, Published, doubts, judge_all, publish, report_of, summary_of};
+use crate::study::FileKind;
 use crate::study::{Layout, Lock, RunTimes, STUDY, Snapshot, Study, before_run, remove_journals, save};
 use crate::text::words::counted;
 
@@ -199,7 +200,7 @@ fn pages_left(elsewhere: Elsewhere) -> String {
 /// Writes down what is up to date now.
 fn take_snapshot(study: &Study, published: Published) -> Result<(), CliError> {
     // What the study says of itself, or a calibration, has a say in every page.
-    if study.unread.iter().any(|one| one.file() == STUDY || one.file().starts_with("calibrations/")) {
+    if study.unread.iter().any(|one| one.file() == STUDY || FileKind::of(one.file()) == Some(FileKind::Calibration)) {
         return Ok(());
     }
     let Published { experiments, of_the_study, .. } = published;

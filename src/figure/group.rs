@@ -32,7 +32,7 @@ impl Group {
             }
         }
         // The exact motion comes first wherever the table has it, so that it looks the same in every figure.
-        let exact = words::of_solver("event_driven");
+        let exact = words::of_solver(words::EVENT_DRIVEN);
         groups.sort_by_key(|group| !group.words.iter().flatten().any(|word| *word == exact));
         groups
     }

@@ -13,6 +13,7 @@ use super::sample::Sample;
 use super::source::Source;
 use super::style::Look;
 use super::{label, searches};
+use crate::text::name;
 
 /// The value that a curve takes at infinite x, or without an x.
 #[derive(Debug, Clone, PartialEq)]
@@ -143,7 +144,7 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
     let mut curves = Vec::new();
     for (index, axis) in panel.y.iter().enumerate() {
         let y = source.column(&axis.column)?;
-        let spread = source.table.column(&format!("{}_spread", y.name)).filter(|_| panel.band == Band::Spread);
+        let spread = source.table.column(&name::spread(&y.name)).filter(|_| panel.band == Band::Spread);
         for (number, group) in groups.iter().enumerate() {
             let traits = Traits::new(source, index, panel.y.len(), &shown, group);
             let mut words = if panel.y.len() > 1 { vec![source.label(axis)?] } else { Vec::new() };

@@ -11,6 +11,7 @@ use super::field::{Field, Spot, cell_edges};
 use super::group::Group;
 use super::label;
 use super::source::Source;
+use crate::text::name;
 
 /// A place on the axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,7 +51,7 @@ pub(super) struct Map<'a> {
 
 /// The largest standard deviation of an ensemble over its mean, where some motion is chaotic.
 fn largest_spread(source: Source<'_>, value: &Column) -> Option<f64> {
-    let spread = source.table.column(&format!("{}_spread", value.name))?;
+    let spread = source.table.column(&name::spread(&value.name))?;
     let share = |row: usize| Some((spread.data.number(row)? / value.data.number(row)?).abs());
     let shares = (0..source.table.rows()).filter_map(share);
     shares.filter(|share| share.is_finite() && *share > 0.0).reduce(f64::max)

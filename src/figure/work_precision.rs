@@ -1,6 +1,7 @@
 //! Work-precision diagrams: error against wall time, both logarithmic.
 
 use crate::experiment::{Axis, AxisScale, AxisUnit, Band, Drawing, FigureSpec, Joined, Level, Panel};
+use crate::text::name;
 
 /// The figure of a table with the columns `solver`, `case`, `time` (s), `error` and `event_error`; all panels show the `times` from the
 /// first to the second; `floor` is the error below which chaos leaves no meaning.
@@ -17,7 +18,7 @@ pub fn work_precision(times: [f64; 2], floor: Option<f64>, events: bool) -> Figu
     let panel = |column: &str, label: &str, guides: Vec<Level>| Panel {
         x: axis("time", "Wall time of a run", Some(times)),
         y: vec![axis(column, label, None)],
-        by: vec!["solver".into(), "case".into()],
+        by: vec![name::SOLVER.into(), "case".into()],
         band: Band::None,
         over_first: false,
         guides,

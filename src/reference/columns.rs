@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use super::view::Absence;
 use crate::table::{Column, Data, Table};
+use crate::text::name;
 
 /// A column and where it stands.
 #[derive(Debug, Clone, Copy)]
@@ -39,7 +40,7 @@ pub(super) fn parameter<'t>(table: &'t Table, name: &str) -> Result<Found<'t>, A
     if !cells.iter().any(|cell| cell.is_nan()) {
         return Ok(found);
     }
-    let parts = match find_if_any(table, "sweep").map(|sweep| &sweep.column.data) {
+    let parts = match find_if_any(table, name::SWEEP).map(|sweep| &sweep.column.data) {
         Some(Data::Text(parts)) => Some(parts),
         _ => None,
     };

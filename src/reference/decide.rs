@@ -20,6 +20,7 @@ use super::text::{
 use super::view::{Absence, Cell, Line, Source, View};
 use super::words;
 use crate::measure::column_words;
+use crate::text::name;
 
 /// Decides a claim over the rows that the view means.
 pub(crate) fn decide(predicate: &Predicate, view: &View<'_>) -> Result<Decision, Absence> {
@@ -72,7 +73,7 @@ fn trend(claim: &Trend, view: &View<'_>) -> Result<Decision, Absence> {
         .map(|(i, (level, number))| {
             let level = words::of_level(&claim.along, level, along_unit);
             match (i, &level) {
-                (0, level) if &*claim.along != "sweep" => format!("{number} ({} = {level})", symbol(&claim.along)),
+                (0, level) if &*claim.along != name::SWEEP => format!("{number} ({} = {level})", symbol(&claim.along)),
                 (_, level) => format!("{number} ({level})"),
             }
         })

@@ -43,6 +43,7 @@ use super::resonance::PrintedPeak;
 use super::selection::Selection;
 use super::verdict::Verdict;
 use super::view::Source;
+use crate::text::json;
 use crate::yaml::{Findings, Problems};
 
 /// The entries of one experiment.
@@ -198,8 +199,7 @@ impl Entry {
     /// True if it tells solvers apart; otherwise it reads the event-driven rows, where there are any.
     #[must_use]
     pub fn names_solver(&self) -> bool {
-        self.rows.0.contains_key("solver")
-            || serde_json::to_string(&self.check).is_ok_and(|text| text.contains("\"solver\""))
+        self.rows.0.contains_key("solver") || json::line(&self.check).contains("\"solver\"")
     }
 
     fn sources(&self) -> Vec<Source<'_>> {

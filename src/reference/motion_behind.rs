@@ -9,6 +9,7 @@ use super::view::{Place, RowsByTable, TableState, Tables};
 use crate::dynamics::MotionKind;
 use crate::measure::Measure;
 use crate::table::Table;
+use crate::text::name;
 use crate::text::words::of_key;
 
 /// The motion behind a verdict.
@@ -56,7 +57,7 @@ fn in_words(table: &Table, row: usize) -> Option<String> {
     let more = match kind {
         MotionKind::Periodic { .. } => cell(of_key(&Measure::LargestMultiplier))
             .map(|largest| format!(", largest multiplier {}", significant(largest, 2))),
-        MotionKind::Chaotic => cell(exponent.clone()).zip(cell(format!("{exponent}_num"))).map(|(value, error)| {
+        MotionKind::Chaotic => cell(exponent.clone()).zip(cell(name::numerical(&exponent))).map(|(value, error)| {
             format!(", Lyapunov exponent {} ± {} a cycle", significant(value, 2), significant(error, 1))
         }),
         _ => None,

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::view::{RowsByTable, TableState, Tables};
+use crate::text::name;
 
 /// What was simulated for an entry; the same on every machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -22,7 +23,7 @@ impl Price {
         for (id, rows) in decisive {
             let Some(TableState::Present(table)) = tables.get(id) else { continue };
             let [events, members, evaluations] =
-                ["events", "members", "evaluations"].map(|name| table.floats(name).unwrap_or_default());
+                ["events", name::MEMBERS, "evaluations"].map(|name| table.floats(name).unwrap_or_default());
             for row in rows {
                 let count = |column: &[f64]| column.get(*row).copied().filter(|count| *count >= 0.0);
                 price.rows += 1;

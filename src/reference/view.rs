@@ -10,11 +10,14 @@ use super::columns::{Found, find, find_if_any, height, labels, parameter};
 use super::selection::{Allowed, Selection, same};
 use super::text::{known, significant, symbol, with_unit};
 use super::verdict::{NoTable, WhyNoTable};
+use crate::experiment::SearchPoint;
 use crate::experiment::{Parameter, assumption_of};
 use crate::table::{BASELINE, Data, Table, UNKNOWN};
+use crate::text::name;
+use crate::text::words::EVENT_DRIVEN;
 
 /// The solver that is meant where an entry names none.
-const DEFAULT_SOLVER: &str = "event_driven";
+const DEFAULT_SOLVER: &str = EVENT_DRIVEN;
 
 /// The state in which the table of an experiment is.
 #[derive(Debug, Clone, PartialEq)]
@@ -227,10 +230,10 @@ impl<'a> View<'a> {
         let selection = if at_home { self.given.and(source.rows) } else { source.rows.clone() };
         let mut rows = Rows { id: id.into(), table, indices: (0..height(table)).collect() };
         let open = |name: &str| !selection.0.contains_key(name) && by != Some(name);
-        let (variant, variants) = labels(table, "variant")?;
+        let (variant, variants) = labels(table, name::VARIANT)?;
         let mut asked = vec![variant];
         // First, as a table with twenty variants has twenty times the rows.
-        if open("variant") {
+        if open(name::VARIANT) {
             let was_run = variants.iter().any(|label| label == self.variant);
             let stays = !was_run && !table.depends_on(assumption_of(self.variant)).unwrap_or(at_home);
             let wanted = if stays { BASELINE } else { self.variant };
@@ -241,12 +244,12 @@ impl<'a> View<'a> {
             asked.push(found);
             rows.indices.retain(|&row| allowed.admits(&found.column.data, row));
         }
-        let (solver, solvers) = labels(table, "solver")?;
+        let (solver, solvers) = labels(table, name::SOLVER)?;
         asked.push(solver);
-        if open("solver") && rows.indices.iter().any(|&row| solvers[row] == DEFAULT_SOLVER) {
+        if open(name::SOLVER) && rows.indices.iter().any(|&row| solvers[row] == DEFAULT_SOLVER) {
             rows.indices.retain(|&row| solvers[row] == DEFAULT_SOLVER);
         }
-        let (failure, failures) = labels(table, "failure")?;
+        let (failure, failures) = labels(table, name::FAILURE)?;
         asked.push(failure);
         if rows.indices.is_empty() {
             return Err(Absence::NoRow(if selection.0.is_empty() {
@@ -319,14 +322,13 @@ impl<'a> View<'a> {
     /// The columns that say how uncertain a measure is. A measure has all of them, the place of a maximum or an onset no spread, and a
     /// parameter none; of those that belong together none may be missing.
     fn errors<'t>(&self, rows: &Rows<'t>, of: &str) -> Result<Errors<'t>, Absence> {
-        let companion = |suffix: &str| find_if_any(rows.table, &format!("{of}{suffix}"));
-        let (own, spread) = (companion("_num"), companion("_spread"));
-        let is_place = ["_at_maximum", "_at_onset"].iter().any(|end| of.ends_with(end));
-        let whole = if is_place { own.is_some() } else { spread.is_some() == own.is_some() };
+        let (numerical, of_spread) = (name::numerical(of), name::spread(of));
+        let (own, spread) = (find_if_any(rows.table, &numerical), find_if_any(rows.table, &of_spread));
+        let whole = if SearchPoint::is_place(of) { own.is_some() } else { spread.is_some() == own.is_some() };
         if !whole {
-            return Err(Absence::Broken(format!("`{of}` lacks a part of its error: `{of}_num` or `{of}_spread`")));
+            return Err(Absence::Broken(format!("`{of}` lacks a part of its error: `{numerical}` or `{of_spread}`")));
         }
-        let members = if spread.is_some() { Some(find(rows.table, "members")?) } else { None };
+        let members = if spread.is_some() { Some(find(rows.table, name::MEMBERS)?) } else { None };
         for found in [own, spread, members].into_iter().flatten() {
             self.note_all(rows, found, Role::Error);
         }
@@ -423,7 +425,7 @@ impl<'a> View<'a> {
         let read = self.reads.tables.borrow();
         let others = read.keys().map(String::as_str).filter(|id| *id != self.home);
         for table in std::iter::once(self.home).chain(others).filter_map(|id| self.table(id).ok()) {
-            for label in labels(table, "variant").map_or(&[][..], |(_, labels)| labels) {
+            for label in labels(table, name::VARIANT).map_or(&[][..], |(_, labels)| labels) {
                 if label != BASELINE && !found.contains(&label.as_str()) {
                     found.push(label);
                 }

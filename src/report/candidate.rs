@@ -7,6 +7,7 @@ use crate::text::number::{compact, quantity, significant};
 use crate::text::words::{self, counted};
 
 use super::markdown::{Align, MarkdownTable};
+use crate::text::name;
 
 /// The section on an experiment's page.
 pub(super) fn section(optimise: &Optimise, table: &Table) -> String {
@@ -64,7 +65,7 @@ impl Rows {
         let measure = words::of_key(&optimise.measure);
         let word = words::of_key(&optimise.gaps);
         let gaps: Vec<Vec<f64>> = (1..=optimise.bounds.len()).map(|gap| floats(&format!("{word}_{gap}"))).collect();
-        let (value, error) = (floats(&measure), floats(&format!("{measure}_num")));
+        let (value, error) = (floats(&measure), floats(&name::numerical(&measure)));
         let (better, better_error) = (floats("improvement"), floats("improvement_num"));
         let (seeds, varied, evaluations) = (floats("seed"), floats("varied"), floats("evaluations"));
         let at = |column: &[f64], row: usize| column.get(row).copied().unwrap_or(f64::NAN);

@@ -8,6 +8,7 @@ use std::path::Path;
 use super::other_pages::is_written_otherwise;
 use super::pages::{NotDrawn, render, rendered};
 use super::verdicts::Judgement;
+use crate::study::FileKind;
 use crate::study::{Refused, Study, stem};
 
 /// What a run writes below `reports/` for an experiment.
@@ -59,7 +60,7 @@ pub enum How {
 #[must_use]
 pub fn departures(study: &Study, judgement: &Judgement, only: Option<&BTreeSet<&str>>) -> Vec<Departure> {
     // Its verdicts stand on the pages of other experiments, too, and a variant that only its entries ask for is not planned.
-    let unread = study.unread.iter().map(Refused::file).filter(|file| file.starts_with("reference/"));
+    let unread = study.unread.iter().map(Refused::file).filter(|file| FileKind::of(file) == Some(FileKind::Reference));
     let unread: Vec<_> = unread.map(|file| Departure { file: file.into(), how: How::NotJudged }).collect();
     if !unread.is_empty() {
         return unread;

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::finding::{self, CheckView};
 use crate::reference::{Comparison, Judged, NoTable};
+use crate::text::json;
 
 /// Raised when a key changes its meaning.
 const FORMAT: u32 = 1;
@@ -18,8 +19,7 @@ pub fn json(view: &CheckView<'_>) -> String {
         entries: view.entries.iter().map(|entry| Entry::of(entry.judged, entry.file)).collect(),
         unusable: view.troubles.iter().map(|one| Unusable { file: &one.file, message: &one.message }).collect(),
     };
-    // Plain data of strings and numbers: there is nothing that could not be written.
-    serde_json::to_string_pretty(&document).unwrap_or_default() + "\n"
+    json::page(&document)
 }
 
 #[derive(Serialize)]

@@ -7,6 +7,7 @@ use crate::table::{Data, Table};
 use crate::text::number::compact;
 
 use super::json::{Number, Standing};
+use crate::text::name;
 
 /// A number that is not the same any more.
 #[derive(Debug, Clone, PartialEq)]
@@ -180,17 +181,17 @@ impl<'t> Rows<'t> {
             Data::Float(cells) => Some(cells.as_slice()),
             _ => None,
         };
-        let members = table.column("members").and_then(|column| match &column.data {
+        let members = table.column(name::MEMBERS).and_then(|column| match &column.data {
             Data::Int(cells) => Some(cells.as_slice()),
             _ => None,
         });
-        let is_measure = |name: &str| floats(name).is_some() && floats(&format!("{name}_num")).is_some();
+        let is_measure = |it: &str| floats(it).is_some() && floats(&name::numerical(it)).is_some();
         let mut measures = BTreeMap::new();
         for column in &table.columns {
-            let name = column.name.as_str();
-            if let (Some(value), Some(own)) = (floats(name), floats(&format!("{name}_num"))) {
-                let spread = floats(&format!("{name}_spread"));
-                measures.insert(name, Measure { unit: &column.unit, value, own, spread, members });
+            let measure = column.name.as_str();
+            if let (Some(value), Some(own)) = (floats(measure), floats(&name::numerical(measure))) {
+                let spread = floats(&name::spread(measure));
+                measures.insert(measure, Measure { unit: &column.unit, value, own, spread, members });
             }
         }
         // What stands before the first measure tells the rows apart.

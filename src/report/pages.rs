@@ -16,6 +16,7 @@ use crate::experiment::{Experiment, FigureSpec};
 use crate::figure::{FigureError, Picture, figure_stem, sketch};
 use crate::measure::rounded;
 use crate::reference::{Judged, ReferenceFile, Verdict};
+use crate::study::FileKind;
 use crate::study::{
     FileHash, Heading, Inputs, Item, Publication, Record, State, Study, Summary, record_name, stem, table_name,
 };
@@ -134,7 +135,7 @@ fn keeps_its_verdicts(study: &Study, page: &Page<'_>) -> bool {
 }
 
 fn is_reference_read(study: &Study, id: &str) -> bool {
-    study.unread.iter().all(|one| !one.file().starts_with("reference/") || stem(one.file()) != id)
+    study.unread.iter().all(|one| FileKind::of(one.file()) != Some(FileKind::Reference) || stem(one.file()) != id)
 }
 
 /// How many experiments without a table, as in a study that was just cloned, or without a reference that can be read have a verdict in the

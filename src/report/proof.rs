@@ -5,6 +5,7 @@ use crate::text::number::{self, quantity, significant};
 use crate::text::words;
 
 use super::markdown::escaped;
+use crate::text::name;
 use crate::text::words::counted;
 
 /// What the column `chaotic` counts: a twin parts within the cycles of the run, whatever motion that ends in. The page counts the kinds of
@@ -17,7 +18,7 @@ pub(super) fn section(table: Option<&Table>) -> String {
     let baseline = table.baseline();
     let mut text = String::new();
     for solver in solvers(&baseline) {
-        let of_solver = baseline.select(&baseline.rows_where("solver", &solver));
+        let of_solver = baseline.select(&baseline.rows_where(name::SOLVER, &solver));
         let proof = Proof { table: &of_solver };
         let rows = counted(of_solver.rows(), "row", "rows");
         if proof.needs_no_run() {
@@ -32,7 +33,7 @@ pub(super) fn section(table: Option<&Table>) -> String {
             proof.worst("momentum_residual"),
             proof.worst("energy_residual"),
             proof.smallest_margin(),
-            match (proof.total("chaotic").as_str(), proof.largest("members").as_str()) {
+            match (proof.total("chaotic").as_str(), proof.largest(name::MEMBERS).as_str()) {
                 ("0", _) => String::new(),
                 (rows, "1") => format!("; {SENSITIVE}: {rows}, each of a single run"),
                 (rows, most) => format!("; {SENSITIVE}: {rows}, run as ensembles of up to {most} members"),
@@ -54,7 +55,7 @@ pub(super) fn section(table: Option<&Table>) -> String {
 /// The solvers of the rows, in their order.
 fn solvers(table: &Table) -> Vec<String> {
     let mut solvers: Vec<String> = Vec::new();
-    for solver in table.texts("solver").unwrap_or_default() {
+    for solver in table.texts(name::SOLVER).unwrap_or_default() {
         if !solvers.contains(solver) {
             solvers.push(solver.clone());
         }
@@ -65,7 +66,7 @@ fn solvers(table: &Table) -> Vec<String> {
 /// Runs without a result; nothing if all went well.
 pub(super) fn failures(table: &Table) -> String {
     let mut reasons: Vec<(&String, usize)> = Vec::new();
-    for reason in table.texts("failure").unwrap_or_default().iter().filter(|reason| !reason.is_empty()) {
+    for reason in table.texts(name::FAILURE).unwrap_or_default().iter().filter(|reason| !reason.is_empty()) {
         match reasons.iter_mut().find(|(known, _)| *known == reason) {
             Some((_, count)) => *count += 1,
             None => reasons.push((reason, 1)),
@@ -89,7 +90,7 @@ struct Proof<'a> {
 impl Proof<'_> {
     /// All its numbers come from closed forms: there is no balance that could close.
     fn needs_no_run(&self) -> bool {
-        let members = self.table.floats("members").unwrap_or_default();
+        let members = self.table.floats(name::MEMBERS).unwrap_or_default();
         let mut rows = members.iter().enumerate();
         !members.is_empty() && rows.all(|(row, members)| *members == 0.0 && !self.table.has_failed(row))
     }

@@ -21,6 +21,7 @@ use crate::experiment::{AboutStudy, Author, Licence};
 use crate::reference::ReferenceFile;
 use crate::study::{ASSUMPTIONS, FileHash, Item, Record, STUDY, State, Study, record_name, table_name};
 use crate::table::{ParquetError, Table, parquet};
+use crate::text::json;
 
 /// When this version was released; a crate has to say when it was published, and nobody's clock is asked.
 pub const RELEASED: &str = "2026-11-21";
@@ -69,8 +70,7 @@ pub fn export_crate(study: &Study, items: &[&Item], folder: &Path, published: &s
         return Err(CrateError::NotUpToDate(stale));
     }
     crated.leave_out_dead_links();
-    let description =
-        serde_json::to_string_pretty(&crated.metadata(&study.about, published)).unwrap_or_default() + "\n";
+    let description = json::page(&crated.metadata(&study.about, published));
     crated.files.insert("ro-crate-metadata.json".into(), description.into_bytes());
     write_whole(&crated.files, folder)?;
     Ok(crated.files.len())

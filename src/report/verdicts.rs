@@ -38,7 +38,7 @@ enum OnDisk {
 pub fn judge_all(study: &Study) -> Judgement {
     let states = on_disk(study);
     let tables = tables(&states);
-    let fitted = study.fitted();
+    let fitted = study.sheet.fitted();
     let known = study.known.iter().map(|(id, known)| (id.clone(), known.judged.clone()));
     let verdict = |(id, file): (&String, &ReferenceFile)| (id.clone(), judged(study, file, &tables, &fitted));
     let mut verdicts = study.references.iter().map(verdict).chain(known).collect();
@@ -70,7 +70,7 @@ pub fn judge_all(study: &Study) -> Judgement {
 pub fn judge_tables(study: &Study, tables: &BTreeMap<String, Table>) -> Vec<Judged> {
     let present = tables.iter().map(|(id, table)| (id.clone(), TableState::Present(table)));
     let states: Tables<'_> = orphans(study).map(|id| (id.clone(), TableState::NoExperiment)).chain(present).collect();
-    let fitted = study.fitted();
+    let fitted = study.sheet.fitted();
     study.references.values().flat_map(|file| judged(study, file, &states, &fitted)).collect()
 }
 

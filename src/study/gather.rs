@@ -11,6 +11,7 @@ use super::plan::Item;
 use super::shard::{NotThePart, ROW, Shard, divisible, owner, owners};
 use crate::experiment::ExperimentId;
 use crate::table::{Column, Data, Table, parquet};
+use crate::text::name;
 use crate::text::words::counted;
 
 /// Why the tables of the shards do not make a whole.
@@ -110,7 +111,7 @@ pub fn gather(layout: &Layout, item: &Item, of: u32) -> Result<Finished, GatherE
     }
     let tables: Vec<Table> = parts.into_iter().map(|(_, table, _)| table).collect();
     let table = Table { metadata: item.provenance(), ..join(&tables, &rows) };
-    let reasons = table.texts("failure").unwrap_or_default().iter();
+    let reasons = table.texts(name::FAILURE).unwrap_or_default().iter();
     let failures = Failures::of(reasons.filter(|reason| !reason.is_empty()));
     Ok(Finished { table, failures, ..Finished::default() })
 }

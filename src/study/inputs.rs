@@ -9,6 +9,7 @@ use serde_json::Value;
 use serde_json::value::{RawValue, to_raw_value};
 
 use super::canonical::{Change, changes, hash};
+use crate::text::json;
 
 /// The parts by name.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -45,8 +46,7 @@ impl Inputs {
     /// blake3 of all parts as one canonical JSON text, in hexadecimal.
     #[must_use]
     pub fn fingerprint(&self) -> String {
-        let text = serde_json::to_string(self).unwrap_or_else(|error| unreachable!("parts are JSON: {error}"));
-        hash(text.as_bytes())
+        hash(json::line(self).as_bytes())
     }
 
     /// True if these parts are the same in both.

@@ -17,6 +17,7 @@ use super::tabulate::Row;
 use super::untabulate::Cells;
 use crate::experiment::{Experiment, RowSource};
 use crate::table::{RowFingerprint, Table, parquet};
+use crate::text::name;
 
 /// What is known of an experiment's rows.
 #[derive(Debug, Default)]
@@ -68,13 +69,16 @@ impl KnownRows {
 
     /// Takes cases that are new.
     fn take_groups(&mut self, table: &Table) {
-        let Some(failures) = table.texts("failure") else { return };
+        let Some(failures) = table.texts(name::FAILURE) else { return };
         let mut groups: BTreeMap<RowFingerprint, Vec<usize>> = BTreeMap::new();
         for (row, fingerprint) in table.fingerprints.iter().enumerate() {
             // Variants that do not depend on what was moved repeat the case.
-            let of_variant = table.texts("variant").map(|variants| &variants[row]);
+            let of_variant = table.texts(name::VARIANT).map(|variants| &variants[row]);
             let rows = groups.entry(*fingerprint).or_default();
-            if rows.first().is_none_or(|&first| table.texts("variant").map(|variants| &variants[first]) == of_variant) {
+            if rows
+                .first()
+                .is_none_or(|&first| table.texts(name::VARIANT).map(|variants| &variants[first]) == of_variant)
+            {
                 rows.push(row);
             }
         }
@@ -155,7 +159,7 @@ fn on_disk(layout: &Layout, item: &Item) -> Option<Table> {
 /// True if the table has the experiment's current fingerprint, and a number in every row.
 fn is_of(item: &Item, table: &Table) -> bool {
     table.metadata.get("fingerprint") == Some(&item.fingerprint())
-        && table.texts("failure").is_some()
+        && table.texts(name::FAILURE).is_some()
         && !table.has_failures()
 }
 

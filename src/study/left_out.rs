@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::canonical::hash;
 use super::texts::Texts;
 use crate::experiment::Calibration;
+use crate::text::json;
 
 /// Relative errors, the least and the largest, 0 for a claim that holds; none where there is no number.
 pub type PredictedErrors = Option<[f64; 2]>;
@@ -37,7 +38,7 @@ impl LeftOutRecord {
     /// The file's text.
     #[must_use]
     pub fn text(&self) -> String {
-        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+        json::page(self)
     }
 
     /// The entries that calibrations left out in turn, as they are asked for now, each with the widest range.

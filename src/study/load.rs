@@ -1,18 +1,15 @@
 //! Texts to experiments, with an error for every file that cannot be read.
 
-use std::collections::BTreeMap;
-
+use super::file_ids::FileIds;
+use super::file_kind::FileKind;
 use super::layout::{ASSUMPTIONS, STUDY, folder_of, stem};
-use super::texts::{Bytes, Texts, Unreadable};
+use super::refused::Refused;
+use super::texts::{Bytes, Texts};
 use crate::experiment::{
-    AboutStudy, AssumptionSheet, Assumptions, Cases, Columns, Experiment, ExperimentId, IdError, parse_assumptions,
-    parse_study, parse_with,
+    AboutStudy, AssumptionSheet, Assumptions, Cases, Columns, Experiment, parse_assumptions, parse_study, parse_with,
 };
-use crate::text::utf8::{NotUtf8, decode};
+use crate::text::utf8::decode;
 use crate::yaml::Problems;
-
-/// How the file of an experiment ends.
-const YAML: &str = ".yaml";
 
 /// The experiments of a study with the assumptions that they share.
 #[derive(Debug, Default)]
@@ -55,85 +52,6 @@ pub struct Untried<'a> {
     pub assumptions: &'a Assumptions,
 }
 
-/// A file that is not what it should be.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum Refused {
-    /// Its text has mistakes.
-    #[error("{0}")]
-    Text(#[from] Problems),
-    /// Its name does not make an id.
-    #[error("{file}: {error}")]
-    Name {
-        /// Which file.
-        file: String,
-        /// What is wrong with it.
-        error: IdError,
-    },
-    /// It cannot be read at all.
-    #[error("{file} cannot be read: {error}")]
-    Unreadable {
-        /// Which file.
-        file: String,
-        /// Why.
-        error: Unreadable,
-    },
-    /// It is not a text.
-    #[error("{file}: this is {error}")]
-    Encoding {
-        /// Which file.
-        file: String,
-        /// The first bad byte.
-        error: NotUtf8,
-    },
-    /// Another ending than the one that is looked for would be overlooked.
-    #[error("{0}: rename it to end in .yaml")]
-    Ending(String),
-    /// Two files of one id would write into each other's table; nobody knows which of them is meant.
-    #[error("{file}: {other} has the same id; an id stands for one experiment in the whole study")]
-    Twice {
-        /// Which file.
-        file: String,
-        /// Another one.
-        other: String,
-    },
-}
-
-impl Refused {
-    /// The mistakes with their lines, where there are lines.
-    #[must_use]
-    pub fn problems(&self) -> Option<&Problems> {
-        match self {
-            Self::Text(problems) => Some(problems),
-            _ => None,
-        }
-    }
-
-    /// Each mistake in words, with its line, counted from 1, if it has one.
-    #[must_use]
-    pub fn mistakes(&self) -> Vec<(Option<u64>, String)> {
-        match self {
-            Self::Text(problems) => problems.one_by_one(),
-            Self::Encoding { error, .. } => vec![(u64::try_from(error.line).ok(), self.to_string())],
-            Self::Unreadable { .. } | Self::Name { .. } | Self::Ending(_) | Self::Twice { .. } => {
-                vec![(None, self.to_string())]
-            }
-        }
-    }
-
-    /// The name of the file.
-    #[must_use]
-    pub fn file(&self) -> &str {
-        match self {
-            Self::Text(problems) => &problems.file,
-            Self::Unreadable { file, .. }
-            | Self::Name { file, .. }
-            | Self::Encoding { file, .. }
-            | Self::Ending(file)
-            | Self::Twice { file, .. } => file,
-        }
-    }
-}
-
 impl Loaded {
     /// The columns that the table of an experiment will have, which may be among those that were not asked for; nothing of one
     /// that there is not, or that has mistakes.
@@ -141,8 +59,7 @@ impl Loaded {
         if let Some(source) = self.sources.iter().find(|source| source.experiment.id.0 == id) {
             return Some(source.experiment.columns());
         }
-        let is_it = |file: &str| Texts::is_experiment(file) && stem(file) == id;
-        let (file, bytes) = texts.files.iter().find(|(file, _)| is_it(file))?;
+        let (file, bytes) = texts.of(FileKind::Experiment).find(|(file, _)| stem(file) == id)?;
         let text = text(file, bytes).ok()?;
         let read = parse_with(&id.parse().ok()?, file, text, &self.sheet.assumptions(), Cases::Tried);
         read.ok().map(|experiment| experiment.columns())
@@ -177,20 +94,16 @@ impl Loaded {
             }
         }
         let assumptions = loaded.sheet.assumptions();
-        let experiments = || texts.files.iter().filter(|(file, _)| Texts::is_experiment(file) && wanted(stem(file)));
-        let mut files_by_stem = BTreeMap::<&str, Vec<&str>>::new();
-        // A file of another ending is refused by itself.
-        for (file, _) in experiments().filter(|(file, _)| file.ends_with(YAML)) {
-            files_by_stem.entry(stem(file)).or_default().push(file);
-        }
+        let experiments = || texts.of(FileKind::Experiment).filter(|(file, _)| wanted(stem(file)));
+        let ids = FileIds::of(experiments().map(|(file, _)| file));
         for (file, bytes) in experiments() {
             let source = text(file, bytes).and_then(|text| {
-                let id = identify(file, &files_by_stem)?;
+                let id = ids.id_of(file)?;
                 let on_untried =
                     |experiment: &Experiment| on_untried(&Untried { experiment, file, assumptions: &assumptions });
                 let cases = if tried(&id.0) { Cases::Tried } else { Cases::ToTry(&on_untried) };
                 let experiment = parse_with(&id, file, text, &assumptions, cases).map_err(Refused::Text)?;
-                Ok(Source { experiment, file: file.clone() })
+                Ok(Source { experiment, file: file.into() })
             });
             match source {
                 Ok(source) => loaded.sources.push(source),
@@ -209,17 +122,6 @@ fn shared<T: Default>(
 ) -> Result<T, Refused> {
     let Some(bytes) = texts.files.get(file) else { return Ok(T::default()) };
     parse(file, text(file, bytes)?).map_err(Refused::Text)
-}
-
-/// The id that a file's name makes.
-fn identify(file: &str, files_by_stem: &BTreeMap<&str, Vec<&str>>) -> Result<ExperimentId, Refused> {
-    let name = file.rsplit('/').next().unwrap_or(file);
-    let stem = name.strip_suffix(YAML).ok_or_else(|| Refused::Ending(file.into()))?;
-    let id: ExperimentId = stem.parse().map_err(|error| Refused::Name { file: file.into(), error })?;
-    match files_by_stem.get(stem).and_then(|files| files.iter().find(|other| **other != file)) {
-        Some(other) => Err(Refused::Twice { file: file.into(), other: (*other).into() }),
-        None => Ok(id),
-    }
 }
 
 pub(super) fn text<'a>(file: &str, bytes: &'a Bytes) -> Result<&'a str, Refused> {

@@ -11,6 +11,7 @@ use crate::dynamics::{MotionKind, Until};
 use crate::experiment::{Experiment, RowSource};
 use crate::measure::{Measure, Settings};
 use crate::table::{BASELINE, Table};
+use crate::text::name;
 use crate::text::words::of_key;
 
 /// What a thousandth changes is read off a figure by nobody, and printed by the study with three digits.
@@ -110,7 +111,7 @@ impl Motions {
             return None;
         }
         let names = table.texts(&of_key(&Measure::Motion))?;
-        let rows = table.rows_where("variant", BASELINE);
+        let rows = table.rows_where(name::VARIANT, BASELINE);
         let mut kinds = BTreeMap::new();
         for kind in rows.iter().filter_map(|&row| names[row].parse::<MotionKind>().ok()) {
             *kinds.entry(kind.word().to_owned()).or_default() += 1;

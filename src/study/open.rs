@@ -1,12 +1,14 @@
 //! The study as loaded: experiments, assumptions and reference, the plan, and what of it is on disk.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
+use super::file_ids::FileIds;
+use super::file_kind::FileKind;
 use super::left_out::{LeftOutRecord, PredictedErrors};
 use super::load::text;
-use crate::experiment::{AboutStudy, AssumptionSheet, Calibration, RowLimit, parse_calibration};
+use crate::experiment::{AboutStudy, AssumptionSheet, Calibration, ExperimentId, RowLimit, parse_calibration};
 use crate::reference::{Check, KnownTables, Prose, ReferenceFile, Role, parse_reference};
 use crate::study::{
     ASSUMPTIONS, Item, Layout, Loaded, Refused, STUDY, Sensitivity, Summary, Texts, Untried, Used, stem,
@@ -183,8 +185,7 @@ impl Study {
     /// The names within the study of the reference files, by experiment.
     #[must_use]
     pub fn reference_names(&self) -> BTreeMap<&str, &str> {
-        let names = self.texts.files.keys().rev().filter(|name| name.starts_with("reference/"));
-        names.map(|name| (stem(name), name.as_str())).collect()
+        self.texts.of(FileKind::Reference).map(|(name, _)| (stem(name), name)).collect()
     }
 
     /// Names of entries or variants that do not exist: in placeholders, in what assumptions and calibrations were fitted to, in the
@@ -227,7 +228,7 @@ impl Study {
             names.iter().filter(unknown).map(|name| problem_from(from, file, name, Lost::Entry)).collect()
         };
         let mut unread = Vec::new();
-        for file in self.texts.files.keys().filter(|file| file.starts_with("reference/")) {
+        for (file, _) in self.texts.of(FileKind::Reference) {
             let entries = self.references.get(stem(file)).into_iter().flat_map(|reference| &reference.entries);
             unread.extend(entries.flat_map(|entry| in_prose(file, &entry.prose())));
         }
@@ -242,19 +243,13 @@ impl Study {
             }
         }
         unread.extend(self.about.findings.iter().flat_map(|finding| in_list(STUDY, &finding.entries, 1)));
-        for file in self.texts.files.keys().filter(|file| file.starts_with("calibrations/")) {
+        for (file, _) in self.texts.of(FileKind::Calibration) {
             let Some(Calibration { fit, hold_out, .. }) = self.calibrations.get(stem(file)) else { continue };
             // All entries of an experiment are asked for by its name.
             let one_by_one = fit.iter().chain(hold_out).filter(|name| !name.ends_with("/*")).cloned();
             unread.extend(in_list(file, &one_by_one.collect::<Vec<_>>(), 1));
         }
         unread
-    }
-
-    /// The ids of the entries that an assumption was fitted to.
-    #[must_use]
-    pub fn fitted(&self) -> BTreeSet<String> {
-        self.sheet.iter().flat_map(|(_, entry)| entry.fitted_to.iter().cloned()).collect()
     }
 
     /// The part of an entry in the choice of inputs.
@@ -281,9 +276,14 @@ fn names(id: &str, entry: &str) -> bool {
 
 fn calibrations(texts: &Texts, sheet: &AssumptionSheet, unread: &mut Vec<Refused>) -> BTreeMap<String, Calibration> {
     let mut calibrations = BTreeMap::new();
-    for (file, bytes) in texts.files.iter().filter(|(file, _)| file.starts_with("calibrations/")) {
-        match text(file, bytes).and_then(|text| parse_calibration(file, text, sheet).map_err(Refused::Text)) {
-            Ok(calibration) => drop(calibrations.insert(stem(file).to_owned(), calibration)),
+    let ids = FileIds::of(texts.of(FileKind::Calibration).map(|(file, _)| file));
+    for (file, bytes) in texts.of(FileKind::Calibration) {
+        let read = text(file, bytes).and_then(|text| {
+            let id = ids.id_of(file)?;
+            Ok((id.0, parse_calibration(file, text, sheet).map_err(Refused::Text)?))
+        });
+        match read {
+            Ok((id, calibration)) => drop(calibrations.insert(id, calibration)),
             Err(refused) => unread.push(refused),
         }
     }
@@ -302,17 +302,14 @@ fn references(
     wanted: &dyn Fn(&str) -> bool,
     unread: &mut Vec<Refused>,
 ) -> BTreeMap<String, ReferenceFile> {
-    let (mut references, mut names) = (BTreeMap::new(), BTreeMap::<&str, &str>::new());
-    let files = texts.files.iter().filter(|(file, _)| file.starts_with("reference/") && wanted(stem(file)));
-    for (file, bytes) in files {
+    let mut references = BTreeMap::new();
+    let files = || texts.of(FileKind::Reference).filter(|(file, _)| wanted(stem(file)));
+    let ids = FileIds::of(files().map(|(file, _)| file));
+    for (file, bytes) in files() {
         let reference = text(file, bytes).and_then(|text| {
-            let id = file.rsplit('/').next().unwrap_or(file).strip_suffix(".yaml");
-            let id = id.ok_or_else(|| Refused::Ending(file.clone()))?;
-            if let Some(other) = names.insert(id, file) {
-                return Err(Refused::Twice { file: file.clone(), other: other.into() });
-            }
-            let reference = parse_reference(id, file, text)?;
-            let read = reference.other_tables().into_iter().chain([id.to_owned()]);
+            let ExperimentId(id) = ids.id_of(file)?;
+            let reference = parse_reference(&id, file, text)?;
+            let read = reference.other_tables().into_iter().chain([id]);
             let columns = read.filter_map(|id| Some((id.clone(), loaded.columns(texts, &id)?))).collect();
             reference.check_tables(file, text, &KnownTables { ids: texts.ids(), columns })?;
             Ok(reference)

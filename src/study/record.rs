@@ -14,6 +14,7 @@ use super::inputs::Inputs;
 use super::reason::Reason;
 use crate::atomic::{self, FileError};
 use crate::experiment::ExperimentId;
+use crate::text::json;
 
 /// Raised when a record changes its shape; older ones then count as absent.
 pub const RECORD_FORMAT: u32 = 2;
@@ -137,9 +138,6 @@ impl Record {
     /// # Errors
     /// [`FileError`] if the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), FileError> {
-        let mut text = serde_json::to_string_pretty(self)
-            .map_err(|error| FileError::new("write", path, std::io::Error::other(error)))?;
-        text.push('\n');
-        atomic::write_if_changed(path, text.as_bytes()).map(|_| ())
+        atomic::write_if_changed(path, json::page(self).as_bytes()).map(|_| ())
     }
 }

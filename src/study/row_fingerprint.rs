@@ -15,6 +15,7 @@ use crate::dynamics::SOLVER_VERSION;
 use crate::experiment::{Assumptions, Case, Experiment, ParameterValue, Recipe};
 use crate::measure::{ENSEMBLE_OF_A_VARIANT, Rigour};
 use crate::table::RowFingerprint;
+use crate::text::json;
 
 /// The fingerprints of an experiment's rows.
 pub(super) struct RowFingerprints<'a> {
@@ -110,8 +111,7 @@ fn link(fingerprints: &mut [RowFingerprint], rows: &[usize]) {
     }
 }
 
-/// Feeds a hash with JSON, which plain data always has; the fields of a type stand in one order.
+/// Feeds a hash with the JSON of a part.
 fn feed(hasher: &mut blake3::Hasher, part: &impl Serialize) {
-    let text = serde_json::to_vec(part).unwrap_or_else(|error| unreachable!("plain data has a JSON form: {error}"));
-    hasher.update(&text).update(b"\n");
+    hasher.update(json::line(part).as_bytes()).update(b"\n");
 }

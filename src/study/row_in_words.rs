@@ -2,6 +2,7 @@
 
 use crate::experiment::{Experiment, Parameter};
 use crate::table::Table;
+use crate::text::name;
 use crate::text::number::quantity;
 use crate::text::words::of_key;
 
@@ -28,6 +29,6 @@ pub(super) fn described(
         };
         Some(format!("{name} = {value}"))
     });
-    let direction = table.texts("direction").map(|words| words[row].clone()).filter(|word| !word.is_empty());
+    let direction = table.texts(name::DIRECTION).map(|words| words[row].clone()).filter(|word| !word.is_empty());
     parts.chain(direction).collect::<Vec<_>>().join(", ")
 }

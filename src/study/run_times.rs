@@ -11,6 +11,7 @@ use super::machine::Machine;
 use super::spent::Spent;
 use crate::atomic::{self, FileError};
 use crate::experiment::ExperimentId;
+use crate::text::json;
 
 /// Its name within the study.
 const NAME: &str = "reports/times.json";
@@ -43,8 +44,6 @@ impl RunTimes {
     /// # Errors
     /// [`FileError`] if the file cannot be written.
     pub fn write(&self, layout: &Layout) -> Result<(), FileError> {
-        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
-        text.push('\n');
-        atomic::write(&layout.path(NAME), text.as_bytes())
+        atomic::write(&layout.path(NAME), json::page(self).as_bytes())
     }
 }

@@ -8,6 +8,7 @@ use crate::dynamics::MotionKind;
 use crate::experiment::{BasinColumn, Experiment, Parameter, Rank, RowSource};
 use crate::measure::Measure;
 use crate::table::Table;
+use crate::text::name;
 use crate::text::words::of_key;
 
 /// A motion that some of the starts end in.
@@ -90,7 +91,7 @@ impl CaseShares {
             (number(BasinColumn::Share)?, number(BasinColumn::ShareLow)?, number(BasinColumn::ShareHigh)?);
         let ratios = table.floats(&of_key(&Measure::VelocityRatio)).unwrap_or_else(|| vec![f64::NAN; table.rows()]);
         let mut cases: Vec<Self> = Vec::new();
-        for row in table.rows_where("variant", crate::table::BASELINE) {
+        for row in table.rows_where(name::VARIANT, crate::table::BASELINE) {
             if names[row].is_empty() {
                 return None;
             }
@@ -98,7 +99,7 @@ impl CaseShares {
             let motion = Attracting {
                 row,
                 motion: names[row].clone(),
-                rank: if ranks[row] == Rank::Best.word() { Rank::Best } else { Rank::Other },
+                rank: Rank::of_word(&ranks[row])?,
                 share: shares[row],
                 interval: [low[row], high[row]],
                 velocity_ratio: ratios[row],

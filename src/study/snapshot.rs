@@ -13,6 +13,7 @@ use std::time::SystemTime;
 use serde::{Deserialize, Serialize};
 
 use super::canonical::hash;
+use super::file_kind::FileKind;
 use super::glance::{Glance, Match};
 use super::layout::{ASSUMPTIONS, Layout, stem};
 use super::record::{PRESENTATION_VERSION, RECORD_FORMAT};
@@ -21,6 +22,7 @@ use super::texts::Texts;
 use crate::atomic::{self, FileError};
 use crate::dynamics::SOLVER_VERSION;
 use crate::experiment::{AssumptionName, AssumptionSheet, parse_assumptions};
+use crate::text::json;
 
 /// Name of the file within the study.
 const NAME: &str = "results/snapshot.bin";
@@ -104,7 +106,7 @@ impl Assumed {
     fn of(sheet: &AssumptionSheet) -> Self {
         Self {
             each: sheet.iter().map(|(name, entry)| (name.clone(), hash_of(entry))).collect(),
-            fitted: sheet.iter().flat_map(|(_, entry)| entry.fitted_to.iter().cloned()).collect(),
+            fitted: sheet.fitted(),
             others: hash_of(&(sheet.cycles(), sheet.defaults().collect::<Vec<_>>())),
         }
     }
@@ -290,7 +292,7 @@ fn glances(layout: &Layout, names: &BTreeSet<String>) -> Result<BTreeMap<String,
 }
 
 fn hash_of(value: &impl Serialize) -> String {
-    serde_json::to_vec(value).map_or_else(|_| String::new(), |text| hash(&text))
+    hash(json::line(value).as_bytes())
 }
 
 /// Texts that concern the study as a whole: what it says of itself, assumptions and calibrations.
@@ -301,7 +303,7 @@ fn shared_inputs(texts: &Texts) -> Hashes {
 
 /// The hash of the experiment's own file among those that it consists of.
 fn own_text(hashes: &Hashes) -> Option<&String> {
-    hashes.iter().find(|(name, _)| name.starts_with("experiments/")).map(|(_, hash)| hash)
+    hashes.iter().find(|(name, _)| FileKind::of(name) == Some(FileKind::Experiment)).map(|(_, hash)| hash)
 }
 
 /// The texts of each experiment; two files of one id are both its own, and never those that a run has left.

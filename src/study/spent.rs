@@ -15,6 +15,7 @@ use crate::atomic;
 use crate::experiment::{ExperimentId, GapWord};
 use crate::measure::{Evaluated, Measure, Rigour, SolverChoice};
 use crate::optimise::Slope;
+use crate::text::json;
 
 /// The folder of what was spent, within the study.
 pub(super) const FOLDER: &str = "results/times";
@@ -64,10 +65,8 @@ impl Spent {
         all.0.retain(|kind, _| !solvers.contains(solver_of(kind)));
         let kept = self.0.iter().filter(|(kind, _)| solvers.contains(solver_of(kind)));
         all.0.extend(kept.map(|(kind, cost)| (kind.clone(), *cost)));
-        if let Ok(text) = serde_json::to_vec(&all)
-            && !self.is_nothing()
-        {
-            let _ = atomic::write(&layout.path(&name(id)), &text);
+        if !self.is_nothing() {
+            let _ = atomic::write(&layout.path(&name(id)), json::line(&all).as_bytes());
         }
     }
 

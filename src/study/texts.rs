@@ -6,7 +6,8 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use super::canonical::hash;
-use super::layout::{ASSUMPTIONS, Layout, STUDY, stem};
+use super::file_kind::FileKind;
+use super::layout::{Layout, STUDY, stem};
 use crate::atomic::FileError;
 
 /// No hand-written experiment is longer; a longer file is refused before it is read.
@@ -61,10 +62,8 @@ impl Texts {
     /// [`FileError`] if a folder cannot be listed: nobody knows what it holds.
     pub fn read(layout: &Layout) -> Result<Self, FileError> {
         let mut texts = Self::default();
-        let yaml: &[&str] = &[".yaml", ".yml"];
-        for (folder, endings) in
-            [("experiments", yaml), ("reference", yaml), ("calibrations", yaml), ("reports/calibrations", &[".json"])]
-        {
+        let written = FileKind::ALL.map(|kind| (kind.folder(), [".yaml", ".yml"].as_slice()));
+        for (folder, endings) in written.into_iter().chain([("reports/calibrations", [".json"].as_slice())]) {
             let path = layout.path(folder);
             if path.is_dir() {
                 texts.read_below(Folder { path, name: folder.into(), depth: DEEPEST }, endings)?;
@@ -83,26 +82,27 @@ impl Texts {
         self.files.get(name)?.as_deref().ok()
     }
 
+    /// Those of a kind, by name, with what they hold.
+    pub(super) fn of(&self, kind: FileKind) -> impl Iterator<Item = (&str, &Bytes)> {
+        let files = self.files.iter().map(|(name, bytes)| (name.as_str(), bytes));
+        files.filter(move |(name, _)| FileKind::of(name) == Some(kind))
+    }
+
     /// Ids that the experiments' files are called by, whether they can be understood or not.
     #[must_use]
     pub fn ids(&self) -> BTreeSet<&str> {
-        self.files.keys().filter(|name| Self::is_experiment(name)).map(|name| stem(name)).collect()
+        self.of(FileKind::Experiment).map(|(name, _)| stem(name)).collect()
     }
 
     /// Ids that the calibrations' files are called by.
     #[must_use]
     pub fn calibrations(&self) -> BTreeSet<&str> {
-        self.files.keys().filter(|name| name.starts_with("calibrations/")).map(|name| stem(name)).collect()
+        self.of(FileKind::Calibration).map(|(name, _)| stem(name)).collect()
     }
 
     /// True for the text of one experiment or of its reference; assumptions and calibrations concern the whole study.
     pub(super) fn is_of_experiment(name: &str) -> bool {
-        Self::is_experiment(name) || name.starts_with("reference/")
-    }
-
-    /// True for the text of an experiment.
-    pub(super) fn is_experiment(name: &str) -> bool {
-        name.starts_with("experiments/") && name != ASSUMPTIONS
+        matches!(FileKind::of(name), Some(FileKind::Experiment | FileKind::Reference))
     }
 
     /// Ids that the files of experiments and of their references are called by.

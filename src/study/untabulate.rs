@@ -7,6 +7,7 @@ use crate::dynamics::Proof;
 use crate::experiment::Experiment;
 use crate::measure::{Evaluated, Measured, TraceColumn};
 use crate::table::{Column, Data, Table, UNKNOWN};
+use crate::text::name;
 use crate::text::words;
 
 /// The columns of a table that the numbers of an experiment's rows stand in.
@@ -48,13 +49,14 @@ impl<'a> Cells<'a> {
             if measure.is_name() {
                 return Some(None);
             }
-            Some(Some([floats(&name)?, floats(&format!("{name}_num"))?, floats(&format!("{name}_spread"))?]))
+            let [value, numerical, spread] = name::with_errors(&name);
+            Some(Some([floats(&value)?, floats(&numerical)?, floats(&spread)?]))
         });
         let named = experiment.measures.iter().find(|measure| measure.is_name());
         let motion = named.map(|measure| table.texts(&words::of_key(measure)));
         let place = experiment.maximise.as_ref().map(|maximise| {
-            let name = maximise.column();
-            Some([floats(&name)?, floats(&format!("{name}_num"))?])
+            let place = maximise.column();
+            Some([floats(&place)?, floats(&name::numerical(&place))?])
         });
         let lists = table.columns.iter().filter_map(|column| match &column.data {
             Data::FloatList(cells) => Some((column, cells.as_slice())),
@@ -78,8 +80,8 @@ impl<'a> Cells<'a> {
             events: counts("events")?,
             ties: counts("ties")?,
             chaotic: counts("chaotic")?,
-            members: counts("members")?,
-            failure: table.texts("failure")?,
+            members: counts(name::MEMBERS)?,
+            failure: table.texts(name::FAILURE)?,
             unknown: table.texts(UNKNOWN),
             lists: lists.collect(),
         })

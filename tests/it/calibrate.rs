@@ -281,12 +281,33 @@ fn every_entry_has_a_role_in_the_choice_of_inputs() {
 }
 
 #[test]
+fn of_two_calibrations_or_references_of_one_name_neither_is_chosen() {
+    let desk = simulated();
+    desk.put("calibrations/stop.yaml", STOP);
+    desk.put("calibrations/other/stop.yaml", STOP);
+    desk.put("reference/other/ch3-stop.yaml", STOP_REFERENCE);
+    let study = Study::new(desk.layout.clone(), desk.texts());
+    let refused: Vec<String> = study.unread.iter().map(ToString::to_string).collect();
+    let twice =
+        |file: &str, other: &str| refused.contains(&format!("{file}: {other} has the same id; rename one of them"));
+    for (folder, file) in [("calibrations", "stop.yaml"), ("reference", "ch3-stop.yaml")] {
+        let above = if folder == "reference" { "reference/ch3" } else { folder };
+        let pair = [format!("{above}/{file}"), format!("{folder}/other/{file}")];
+        assert!(twice(&pair[0], &pair[1]) && twice(&pair[1], &pair[0]), "{refused:#?}");
+    }
+    assert!(study.calibrations.is_empty() && !study.references.contains_key("ch3-stop"));
+    desk.put("calibrations/late.yml", STOP);
+    let study = Study::new(desk.layout.clone(), desk.texts());
+    assert!(study.unread.iter().any(|one| one.to_string().contains("late.yml: rename it")), "{:?}", study.unread);
+}
+
+#[test]
 fn the_calibrations_of_the_study_are_sound() {
     let layout = Layout::new(env!("CARGO_MANIFEST_DIR"));
     let study = Study::new(layout.clone(), Texts::read(&layout).unwrap());
     assert_eq!(study.unread, []);
     let known: Vec<_> = study.references.values().flat_map(|file| &file.entries).collect();
-    let fitted_to = study.fitted();
+    let fitted_to = study.sheet.fitted();
     for (name, calibration) in &study.calibrations {
         let fit: BTreeSet<&String> = calibration.fit.iter().collect();
         assert!(calibration.hold_out.iter().all(|id| !fit.contains(id)), "{name}: what is fitted is not held out");
