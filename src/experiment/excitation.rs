@@ -4,7 +4,7 @@ use super::recipe::{
     Carried, ExcitationKind, ExcitationRecipe, ForcingOrNatural, Given, ImpulseTime, ImpulseTimeRecipe, Parameter,
     Slot, StrengthRecipe, Takes, TimingRecipe,
 };
-use super::scene::SceneReader;
+use super::scene_reader::SceneReader;
 use crate::scene::{Kind, PulseShape};
 use crate::yaml::schema::one_of_words;
 use crate::yaml::word::from_word;

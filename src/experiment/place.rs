@@ -2,11 +2,12 @@
 
 use serde_json::json;
 
+use super::damper::MOST_DAMPERS;
 use super::recipe::{
     ArrayRecipe, AssumptionName, AssumptionValue, Coordinate, Given, ObserveRecipe, Parameter, PlaceRecipe,
     PointsRecipe, Quantity, Slot, Takes,
 };
-use super::scene::{AT, MOST_DAMPERS, SceneReader};
+use super::scene_reader::{AT, SceneReader};
 use crate::scene::{Kind, Take};
 use crate::yaml::reader::number;
 use crate::yaml::schema::between;

@@ -9,7 +9,7 @@ use super::assumption_reader::{AVERAGE, SKIP, read_average, read_skip};
 use super::definition::Transient;
 use super::limit::read_limit;
 use super::recipe::{AssumptionName, AssumptionSheet, AssumptionValue, Cycles, Takes};
-use super::scene::assumption;
+use super::scene_reader::assumption;
 use super::solver::read_solver;
 use crate::dynamics::{Limit, Until};
 use crate::measure::{NamedRows, Settings, SolverChoice};

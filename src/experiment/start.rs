@@ -1,6 +1,6 @@
 //! The start of a scene: initial conditions in the place of static equilibrium.
 
-use super::scene::SceneReader;
+use super::scene_reader::SceneReader;
 use crate::scene::{ParticleStart, Start};
 use crate::yaml::reader::unknown;
 use crate::yaml::schema::word;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::recipe::{Given, Parameter, Quantity, Slot, StructureRecipe, Takes};
-use super::scene::SceneReader;
+use super::scene_reader::{PLACEHOLDER, SceneReader};
 use crate::scene::{FieldValue, Form, KINDS, Kind};
 use crate::yaml::reader::{scalar, unknown};
 use crate::yaml::schema::one_of_words;
@@ -12,8 +12,6 @@ use crate::yaml::{At, Dimension};
 
 /// Most modes that are read at all; how many a structure carries is its own affair.
 const MOST_MODES: u32 = 100_000;
-/// Stands where the file says `swept`.
-const PLACEHOLDER: f64 = 1.0;
 
 /// A structure as read.
 pub(super) struct ReadStructure {

@@ -1,10 +1,10 @@
 //! Contacts in a time history of paths: where the particle's path lies on that of a face. They are bars at the frame, below for the
 //! floor and above for the ceiling, and impulses are vertical lines: claims about an instant are read off there.
 
+use super::axis::Axis;
 use super::canvas::{Pen, Sheet};
 use super::error::FigureError;
 use super::geometry::{Point, Rect};
-use super::panel::Panel;
 use super::source::Source;
 use super::style::{GREY, Look, THIN_CURVE};
 use crate::experiment;
@@ -78,21 +78,21 @@ pub(super) fn contacts(source: Source<'_>, panel: &experiment::Panel) -> Result<
     Ok(found)
 }
 
-/// Bars of contacts, and a line at each impulse.
-pub(super) fn draw(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect) {
-    if let Some(period) = panel.impulses {
-        let (from, to) = (panel.x.number(0.0), panel.x.number(1.0));
+/// Bars of contacts, and a line at each impulse of this period, s, over the axis `x`.
+pub(super) fn draw(sheet: &Sheet, x: &Axis, impulses: Option<f64>, contacts: &[Contact], frame: &Rect) {
+    if let Some(period) = impulses {
+        let (from, to) = (x.number(0.0), x.number(1.0));
         let mut cycle = (from / period).ceil();
         while cycle * period <= to {
-            let at = frame.at(panel.x.share_clamped(cycle * period), 0.0);
+            let at = frame.at(x.share_clamped(cycle * period), 0.0);
             let ends = [at, Point { y: frame.top, ..at }];
             sheet.line(&ends, Pen { color: GREY, width: THIN_CURVE, dash: IMPULSE });
             cycle += 1.0;
         }
     }
-    for contact in &panel.contacts {
+    for contact in contacts {
         let Some(look) = Look::of_path(contact.face.column()) else { continue };
-        let [left, right] = [contact.from, contact.to].map(|at| frame.at(panel.x.share_clamped(at), 0.0).x);
+        let [left, right] = [contact.from, contact.to].map(|at| frame.at(x.share_clamped(at), 0.0).x);
         let top = match contact.face {
             Face::Floor => frame.bottom - BAR,
             Face::Ceiling => frame.top,

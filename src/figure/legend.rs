@@ -7,8 +7,9 @@ use super::branch::SpecialPoint;
 use super::canvas::{Anchor, Lettering, Pen, Sheet, text_width};
 use super::geometry::{Point, Rect};
 use super::line::{Curve, Join};
-use super::paint;
-use super::quoted::{self, Quoted};
+use super::marker;
+use super::obstacles::Obstacles;
+use super::quoted::Quoted;
 use super::strip;
 use super::style::{
     BAND_OPACITY, CURVE, Color, GREY, GUIDE, GUIDE_DASH, INK, KindOfMotion, LEGEND_LINE, LEGEND_ROW, LEGEND_TEXT, Look,
@@ -52,59 +53,6 @@ pub(super) struct Legend {
     entries: Vec<Entry>,
     /// Room before the rows of a legend above a frame, for a panel's letter.
     pub indent: f64,
-}
-
-/// What a legend must not cover.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Obstacles {
-    pub lines: Vec<Vec<Point>>,
-    pub boxes: Vec<Rect>,
-}
-
-impl Obstacles {
-    /// True if nothing lies in this place.
-    pub(super) fn leave_free(&self, place: &Rect) -> bool {
-        self.leave_boxes_free(place)
-            && !self.lines.iter().any(|line| {
-                line.windows(2).any(|pair| place.meets(pair[0], pair[1]))
-                    || matches!(line.as_slice(), [one] if place.meets(*one, *one))
-            })
-    }
-
-    /// True if no box lies in this place; lines may.
-    fn leave_boxes_free(&self, place: &Rect) -> bool {
-        !self.boxes.iter().any(|taken| taken.overlaps(place))
-    }
-
-    /// Of these places the first with nothing in it, `room` around it being left; else the one that covers least of lines, over which a
-    /// label can be read as it cannot over another one.
-    pub(super) fn clearest<'p>(&self, places: impl Iterator<Item = &'p Rect>, room: f64) -> Option<&'p Rect> {
-        let mut clearest: Option<(f64, &Rect)> = None;
-        for place in places {
-            let roomy = place.grown(room);
-            if self.leave_free(&roomy) {
-                return Some(place);
-            }
-            if !self.leave_boxes_free(&roomy) {
-                continue;
-            }
-            let covered = self.covered(place);
-            if clearest.is_none_or(|(least, _)| covered < least) {
-                clearest = Some((covered, place));
-            }
-        }
-        clearest.map(|(_, place)| place)
-    }
-
-    /// The length of lines in this place, in pixels.
-    fn covered(&self, place: &Rect) -> f64 {
-        let stretches = self.lines.iter().flat_map(|line| line.windows(2));
-        let within = |pair: &[Point]| {
-            let length = libm::hypot(pair[1].x - pair[0].x, pair[1].y - pair[0].y);
-            place.share_within(pair[0], pair[1]).unwrap_or(0.0) * length
-        };
-        stretches.map(within).sum()
-    }
 }
 
 impl Legend {
@@ -329,10 +277,10 @@ impl Entry {
             Sign::Line { look, marker } => {
                 sheet.line(&[at, end], Pen { color: look.color, width: look.width, dash: look.dash });
                 if marker {
-                    paint::marker(sheet, middle, look);
+                    marker::draw(sheet, middle, look);
                 }
             }
-            Sign::Marker(look) => paint::marker(sheet, middle, look),
+            Sign::Marker(look) => marker::draw(sheet, middle, look),
             Sign::Dot(look) => sheet.disc(middle, look.width, look.color),
             Sign::Band(color) => {
                 let half = LEGEND_ROW * 0.3;
@@ -343,18 +291,18 @@ impl Entry {
             Sign::Quoted => {
                 let bar = [-0.45, 0.45].map(|down| Point { y: at.y + down * LEGEND_ROW, ..middle });
                 sheet.line(&bar, Pen::solid(INK, GUIDE));
-                quoted::diamond(sheet, middle, 0.8 * QUOTED);
+                marker::diamond(sheet, middle, 0.8 * QUOTED);
             }
             Sign::Tolerance => {
-                sheet.line(&[at, end], Pen { color: INK, width: GUIDE, dash: quoted::DASH });
-                quoted::bar(sheet, [-0.35, 0.35].map(|down| Point { y: at.y + down * LEGEND_ROW, ..middle }));
+                sheet.line(&[at, end], Pen { color: INK, width: GUIDE, dash: marker::DASH });
+                marker::bar(sheet, [-0.35, 0.35].map(|down| Point { y: at.y + down * LEGEND_ROW, ..middle }));
             }
             Sign::Motion(class) => {
                 let place = Rect { left: at.x, top: at.y - 12.0, right: at.x + SWATCH, bottom: at.y + 12.0 };
                 strip::cell(sheet, &place, class);
             }
             Sign::Heading => {}
-            Sign::Special(kind) => paint::marker(sheet, middle, Look::of_special(kind)),
+            Sign::Special(kind) => marker::draw(sheet, middle, Look::of_special(kind)),
             Sign::Bar => {
                 let place = Rect { left: at.x, top: at.y - 6.0, right: end.x, bottom: at.y + 6.0 };
                 sheet.cell(&place, GREY);

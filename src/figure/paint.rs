@@ -1,7 +1,5 @@
 //! A panel put on the sheet: grid, bands, curves, markers, frame, numbers, legend, in this order.
 
-use std::f64::consts::FRAC_PI_4;
-
 use crate::experiment::{Band, Joined};
 use crate::text::number::compact;
 
@@ -10,10 +8,12 @@ use super::canvas::{Anchor, Lettering, Pen, Sheet, UNITS, text_width};
 use super::contact;
 use super::geometry::{Point, Rect};
 use super::layout::{Place, line_height};
-use super::legend::Obstacles;
 use super::line::{Curve, Join};
+use super::marker;
+use super::obstacles::Obstacles;
 use super::panel::Panel;
 use super::peak::PeakMark;
+use super::quoted_sign::QuotedSign;
 use super::strip;
 use super::style::{
     BAND_OPACITY, CLOSER_OPACITY, CURVE, Color, FRAME, GREY, GRID, GUIDE, GUIDE_DASH, INK, LABEL_TEXT, Look, MARKER,
@@ -38,7 +38,7 @@ pub(super) fn panel(
     x_labels: bool,
 ) {
     let frame = &place.frame;
-    let mut taken = panel.obstacles(frame);
+    let mut taken = obstacles(panel, frame);
     if let LegendPlace::Within(place) = legend {
         taken.boxes.push(place);
     }
@@ -54,9 +54,7 @@ pub(super) fn panel(
         let corners = [frame.at(left, 0.0), frame.at(left, 1.0), frame.at(right, 1.0), frame.at(right, 0.0)];
         sheet.fill(&corners, INK, CLOSER_OPACITY);
     }
-    for (number, one) in panel.quoted.iter().enumerate() {
-        one.uncertainty(number, sheet, panel, frame);
-    }
+    QuotedSign::all(panel, frame).for_each(|one| one.uncertainty(sheet));
     for guide in &panel.spec.guides {
         // A legend names it.
         let label = if panel.legend.is_empty() { guide.label.as_str() } else { "" };
@@ -67,24 +65,20 @@ pub(super) fn panel(
             level(sheet, panel, frame, limit.y, &limit.label, curve.look.color, &mut taken);
         }
     }
-    contact::draw(sheet, panel, frame);
+    contact::draw(sheet, &panel.x, panel.impulses, &panel.contacts, frame);
     let [x, y] = [(&panel.x, &panel.x_label), (&panel.y, &panel.y_label)].map(|(axis, label)| Labelled { axis, label });
     sheet.group(&Attributes::frame(frame, UNITS, x, y), || curves(sheet, panel, frame));
     for sign in panel.signs(frame) {
         if sign.at != sign.of {
             sheet.line(&[sign.of, sign.at], Pen::solid(INK, GRID));
         }
-        marker(sheet, sign.at, Look::of_special(sign.kind));
+        marker::draw(sheet, sign.at, Look::of_special(sign.kind));
     }
     peak_marks(sheet, panel, frame, &mut taken);
-    for (number, one) in panel.quoted.iter().enumerate() {
-        one.draw(number, sheet, panel, frame);
-    }
-    for (number, one) in panel.quoted.iter().enumerate() {
-        one.write(number, sheet, panel, frame, &mut taken);
-    }
+    QuotedSign::all(panel, frame).for_each(|one| one.draw(sheet));
+    QuotedSign::all(panel, frame).for_each(|one| one.write(sheet, &mut taken));
     axes(sheet, panel, frame, x_labels);
-    strip::draw(sheet, panel, frame);
+    strip::draw(sheet, &panel.x, &panel.strips, frame);
     y_label(sheet, place);
     if let Some(letter) = letter {
         // Clear of the numbers at the y axis.
@@ -133,7 +127,7 @@ fn curve(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, curve: &Curve) {
             (false, _) => &[],
         };
         for &at in marked {
-            marker(sheet, at, curve.look);
+            marker::draw(sheet, at, curve.look);
         }
     }
 }
@@ -141,7 +135,7 @@ fn curve(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, curve: &Curve) {
 /// A triangle on each peak, with its place on the x axis where there is room for the number.
 fn peak_marks(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, taken: &mut Obstacles) {
     for PeakMark { at, x, look } in panel.peak_marks(frame) {
-        marker(sheet, at, Look { marker: Marker::Down, ..look });
+        marker::draw(sheet, at, Look { marker: Marker::Down, ..look });
         let text = compact(panel.x.displayed(x), 4);
         let (width, half) = (text_width(&text, NOTE_TEXT), NOTE_TEXT / 2.0);
         let (up, aside) = (half + MARKER + SPACE / 2.0, width / 2.0 + MARKER + SPACE / 2.0);
@@ -241,32 +235,32 @@ fn y_label(sheet: &Sheet, place: &Place) {
     }
 }
 
-/// A curve's marker.
-pub(super) fn marker(sheet: &Sheet, at: Point, look: Look) {
-    let corner = |dx: f64, dy: f64| Point { x: at.x + dx * MARKER, y: at.y + dy * MARKER };
-    match look.marker {
-        Marker::Circle => sheet.disc(at, MARKER, look.color),
-        Marker::Square => {
-            let corners = [corner(-0.9, -0.9), corner(0.9, -0.9), corner(0.9, 0.9), corner(-0.9, 0.9)];
-            sheet.fill(&corners, look.color, 1.0)
-        }
-        Marker::Up => sheet.fill(&[corner(0.0, -1.2), corner(1.1, 0.8), corner(-1.1, 0.8)], look.color, 1.0),
-        Marker::Down => sheet.fill(&[corner(0.0, 1.2), corner(1.1, -0.8), corner(-1.1, -0.8)], look.color, 1.0),
-        Marker::Diamond => {
-            let corners = [corner(0.0, -1.3), corner(1.1, 0.0), corner(0.0, 1.3), corner(-1.1, 0.0)];
-            sheet.fill(&corners, look.color, 1.0)
-        }
-        Marker::Cross | Marker::Saltire => {
-            let turn = if look.marker == Marker::Cross { 0.0 } else { FRAC_PI_4 };
-            let [sine, cosine] = [libm::sin(turn), libm::cos(turn)];
-            let (long, wide) = (1.1, 0.35);
-            let quarter = [[-wide, -long], [wide, -long], [wide, -wide]];
-            let turned = |quarters: usize| quarter.map(|at| (0..quarters).fold(at, |[x, y], _| [-y, x]));
-            let corners: Vec<Point> =
-                (0..4).flat_map(turned).map(|[x, y]| corner(cosine * x - sine * y, sine * x + cosine * y)).collect();
-            sheet.fill(&corners, look.color, 1.0)
+/// All that a legend or a label must not cover.
+pub(super) fn obstacles(panel: &Panel<'_>, frame: &Rect) -> Obstacles {
+    let mut obstacles = Obstacles::default();
+    for curve in &panel.curves {
+        obstacles.lines.extend(panel.stretches(frame, curve));
+        obstacles.lines.extend(panel.bands(frame, curve));
+        if let Some(limit) = &curve.at_infinity {
+            obstacles.lines.extend(panel.level(frame, limit.y).map(Vec::from));
         }
     }
+    for guide in &panel.spec.guides {
+        obstacles.lines.extend(panel.level(frame, guide.at).map(Vec::from));
+    }
+    if !panel.contacts.is_empty() {
+        let (top, bottom) = (frame.top + contact::BAR, frame.bottom - contact::BAR);
+        obstacles.boxes.extend([Rect { bottom: top, ..*frame }, Rect { top: bottom, ..*frame }]);
+    }
+    let around = |at: Point| Rect { left: at.x, top: at.y, right: at.x, bottom: at.y }.grown(MARKER);
+    obstacles.boxes.extend(panel.signs(frame).into_iter().map(|sign| around(sign.at)));
+    obstacles.boxes.extend(panel.peak_marks(frame).into_iter().map(|mark| around(mark.at).grown(0.2 * MARKER)));
+    if panel.spec.markers {
+        let samples = panel.curves.iter().filter(|curve| curve.join == Join::Line).flat_map(|curve| &curve.samples);
+        obstacles.boxes.extend(samples.filter_map(|sample| panel.place(frame, sample.x, sample.y)).map(around));
+    }
+    QuotedSign::all(panel, frame).for_each(|one| one.obstacle(&mut obstacles));
+    obstacles
 }
 
 fn write(sheet: &Sheet, at: Point, text: &str, size: f64, anchor: Anchor, color: Color) {

@@ -6,18 +6,18 @@ use crate::experiment::{self, Band};
 use crate::table::Data;
 
 use super::axis::{Axis, Extent, Room, Tick};
+use super::beside::Beside;
 use super::branch::{Sign, SpecialPoint, signs, special_points};
 use super::canvas::text_width;
-use super::contact::{self, Contact, contacts};
+use super::contact::{Contact, contacts};
 use super::error::FigureError;
 use super::geometry::{Point, Rect};
 use super::label;
 use super::layout::Needs;
-use super::legend::{Legend, Obstacles};
+use super::legend::Legend;
 use super::line::{Curve, Join, curves};
 use super::peak::{PeakMark, peaks};
 use super::quoted::Quoted;
-use super::render::Beside;
 use super::sample::Sample;
 use super::source::Source;
 use super::strip::{self, Strip};
@@ -320,35 +320,5 @@ impl<'a> Panel<'a> {
     pub(super) fn level(&self, frame: &Rect, y: f64) -> Option<[Point; 2]> {
         let up = self.y.share(y)?;
         Some([frame.at(0.0, up), frame.at(1.0, up)])
-    }
-
-    /// All that a legend or a label must not cover.
-    pub(super) fn obstacles(&self, frame: &Rect) -> Obstacles {
-        let mut obstacles = Obstacles::default();
-        for curve in &self.curves {
-            obstacles.lines.extend(self.stretches(frame, curve));
-            obstacles.lines.extend(self.bands(frame, curve));
-            if let Some(limit) = &curve.at_infinity {
-                obstacles.lines.extend(self.level(frame, limit.y).map(Vec::from));
-            }
-        }
-        for guide in &self.spec.guides {
-            obstacles.lines.extend(self.level(frame, guide.at).map(Vec::from));
-        }
-        if !self.contacts.is_empty() {
-            let (top, bottom) = (frame.top + contact::BAR, frame.bottom - contact::BAR);
-            obstacles.boxes.extend([Rect { bottom: top, ..*frame }, Rect { top: bottom, ..*frame }]);
-        }
-        let around = |at: Point| Rect { left: at.x, top: at.y, right: at.x, bottom: at.y }.grown(MARKER);
-        obstacles.boxes.extend(self.signs(frame).into_iter().map(|sign| around(sign.at)));
-        obstacles.boxes.extend(self.peak_marks(frame).into_iter().map(|mark| around(mark.at).grown(0.2 * MARKER)));
-        if self.spec.markers {
-            let samples = self.curves.iter().filter(|curve| curve.join == Join::Line).flat_map(|curve| &curve.samples);
-            obstacles.boxes.extend(samples.filter_map(|sample| self.place(frame, sample.x, sample.y)).map(around));
-        }
-        for (number, one) in self.quoted.iter().enumerate() {
-            one.obstacle(number, self, frame, &mut obstacles);
-        }
-        obstacles
     }
 }

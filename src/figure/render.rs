@@ -1,12 +1,11 @@
 //! From an experiment's table to the finished picture.
 
-use std::collections::BTreeMap;
-
-use crate::experiment::{Drawing, Experiment, FigureSpec, LineColour};
+use crate::experiment::{Drawing, Experiment, FigureSpec};
 use crate::table::Table;
 
 use super::animation::{animation, still};
 use super::bars::bars;
+use super::beside::Beside;
 use super::canvas::svg;
 use super::error::FigureError;
 use super::layout::{Needs, Place, figure_height, places};
@@ -15,7 +14,6 @@ use super::map::Map;
 use super::map_layout::MapLayout;
 use super::paint::{self, LegendPlace};
 use super::panel::{Panel, Reach};
-use super::quoted::Quoted;
 use super::source::Source;
 use super::style::{LETTER, WIDTH};
 use super::{map_paint, raster};
@@ -43,17 +41,6 @@ impl Picture {
             Err(source) => Err(FigureError::Drawing { figure: figure.to_owned(), source }),
         }
     }
-}
-
-/// What is drawn beside the table.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Beside<'a> {
-    /// What the study's text quotes.
-    pub quoted: &'a [Quoted],
-    /// Period of the impulses, s: a time history with contacts shows their moments.
-    pub impulses: Option<f64>,
-    /// Colours of lines by name, as the study has them.
-    pub colours: Option<&'a BTreeMap<String, LineColour>>,
 }
 
 /// Draws a figure of an experiment from the rows under the assumptions in force. The same input gives the same bytes.
@@ -188,8 +175,8 @@ fn arranged(panels: &[Panel<'_>]) -> (Vec<Arranged>, f64) {
         let mut arranged = Vec::with_capacity(panels.len());
         for (index, (panel, place)) in panels.iter().zip(places(&needs)).enumerate() {
             let frame = place.frame;
-            let within =
-                if above[index] > 0.0 { None } else { panel.legend.place_within(&frame, &panel.obstacles(&frame)) };
+            let obstacles = || paint::obstacles(panel, &frame);
+            let within = if above[index] > 0.0 { None } else { panel.legend.place_within(&frame, &obstacles()) };
             let legend = match within {
                 _ if panel.legend.is_empty() => LegendPlace::None,
                 Some(within) => LegendPlace::Within(within),

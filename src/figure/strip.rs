@@ -1,12 +1,12 @@
 //! Strips below a frame, one for each line: which kind of motion its points belong to, in few classes.
 
 use super::attributes::Attributes;
+use super::axis::Axis;
 use super::canvas::{Pen, Sheet};
 use super::error::FigureError;
 use super::geometry::{Point, Rect};
 use super::group::Group;
 use super::line::Curve;
-use super::panel::Panel;
 use super::source::Source;
 use super::style::{GREY, GRID, KindOfMotion, Look, SPACE, TICK_TEXT};
 use crate::dynamics::MotionKind;
@@ -109,15 +109,15 @@ fn class(kind: MotionKind) -> KindOfMotion {
 }
 
 /// Draws the strips, each point's colour reaching halfway to its neighbours.
-pub(super) fn draw(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect) {
-    let mut top = frame.bottom + APART + first(&panel.strips);
-    for strip in &panel.strips {
+pub(super) fn draw(sheet: &Sheet, x: &Axis, strips: &[Strip], frame: &Rect) {
+    let mut top = frame.bottom + APART + first(strips);
+    for strip in strips {
         if let Some(Look { color, width, dash, .. }) = strip.look {
             let at = Point { x: frame.left - SPACE, y: top + HEIGHT / 2.0 };
             sheet.line(&[Point { x: at.x - SAMPLE, ..at }, at], Pen { color, width, dash });
         }
         let places: Vec<(f64, MotionKind)> =
-            strip.points.iter().filter_map(|(x, kind)| Some((panel.x.share(*x)?, *kind))).collect();
+            strip.points.iter().filter_map(|(at, kind)| Some((x.share(*at)?, *kind))).collect();
         let halfway = |i: usize, j: usize| (places[i].0 + places[j].0) / 2.0;
         let mut from = 0;
         while from < places.len() {

@@ -2,7 +2,8 @@
 
 use super::entry::{Entry, ReferenceFile};
 use super::entry_reader::parse_reference;
-use super::verdict::{Judged, Kind, Verdict};
+use super::judged::{Judged, Kind};
+use super::verdict::Verdict;
 use crate::yaml::{Written, set_keys};
 
 /// Why a verdict cannot be accepted.

@@ -1,13 +1,14 @@
 //! Numbers of a whole stretch of a line: its mean and its standard deviation along the parameter, and its value between
 //! two points. The points need not be even: each stretch between two of them counts by its length.
 
-use super::extract::Extracted;
+use super::absence::Absence;
+use super::extracted::Extracted;
 use super::mapping::word;
 use super::name::{Column, in_unit_of};
 use super::printed::Printed;
 use super::selection::same;
 use super::text::with_unit;
-use super::view::{Absence, Cell, Line, View};
+use super::view::{Cell, Line, View};
 use crate::yaml::At;
 
 word! {

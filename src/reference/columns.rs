@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::view::Absence;
+use super::absence::Absence;
 use crate::table::{Column, Data, Table};
 use crate::text::name;
 

@@ -2,12 +2,13 @@
 
 use std::cmp::Ordering;
 
+use super::absence::Absence;
 use super::claims::{
     Apart, Between, ColumnsAgree, Equal, GreatestPoint, Level, LineAbove, LinesAgree, PathMonotone, PathsCross, Points,
     Trend, Within,
 };
 use super::compare::COVERAGE;
-use super::extract::Extracted;
+use super::extracted::{Extracted, listed};
 use super::extraction::Extraction;
 use super::line::{common, lines};
 use super::place::{best_place, grows_towards};
@@ -15,9 +16,9 @@ use super::predicate::Predicate;
 use super::shape::{greatest_at_end, levels_off, linear, monotone, onsets, peaks};
 use super::tally::{Decision, Outcome, Tally, strict};
 use super::text::{
-    apart as told_apart, in_scale_of, listed, percent, place, significant, symbol, with_error_in_scale_of, with_unit,
+    apart as told_apart, in_scale_of, percent, place, significant, symbol, with_error_in_scale_of, with_unit,
 };
-use super::view::{Absence, Cell, Line, Source, View};
+use super::view::{Cell, Line, Source, View};
 use super::words;
 use crate::measure::column_words;
 use crate::text::name;

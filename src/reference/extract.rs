@@ -1,6 +1,8 @@
 //! Takes numbers out of tables. Each comes with its own error, to which the grid of the sweep belongs: a top is known to lie
 //! between its neighbours, no better.
 
+use super::absence::Absence;
+use super::extracted::Extracted;
 use super::extraction::{
     Along, AtMaximum, Cells, Crossing, Difference, Direction, End, Extraction, Lead, Meeting, NearestPassage, Parting,
     Quotient, Side,
@@ -8,48 +10,9 @@ use super::extraction::{
 use super::line::{Position, common, lines};
 use super::selection::same;
 use super::text::{percent, with_unit};
-use super::view::{Absence, Cell, Line, View};
+use super::view::{Cell, Line, View};
 use crate::measure::column_words;
 use crate::table::BASELINE;
-
-/// A number taken out of a table.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Extracted {
-    pub value: f64,
-    /// Error of the run and of the grid.
-    pub run: f64,
-    /// Standard deviation of the ensemble where it was read.
-    pub spread: f64,
-    pub unit: String,
-    /// What an agreement is measured against where zero is no natural origin, as with an instant: the time between two of
-    /// its kind.
-    pub scale: Option<f64>,
-}
-
-impl Extracted {
-    fn cell(cell: Cell, unit: &str) -> Self {
-        Self { value: cell.value, run: cell.run, spread: cell.spread, unit: unit.into(), scale: None }
-    }
-
-    fn place(position: Position, unit: String) -> Self {
-        Self { value: position.x, run: position.u, spread: 0.0, unit, scale: None }
-    }
-
-    fn exact(value: f64, unit: String) -> Self {
-        Self { value, run: 0.0, spread: 0.0, unit, scale: None }
-    }
-
-    fn times(self, factor: f64) -> Self {
-        let size = factor.abs();
-        Self {
-            value: self.value * factor,
-            run: self.run * size,
-            spread: self.spread * size,
-            unit: self.unit,
-            scale: self.scale.map(|scale| scale * size),
-        }
-    }
-}
 
 impl Extraction {
     /// Takes the number.

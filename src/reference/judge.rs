@@ -6,20 +6,22 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::absence::{Absence, NoTable};
 use super::compare;
+use super::compare::Comparison;
 use super::decide::decide;
 use super::entry::{Check, Entry, ReferenceFile, Tolerance, ToleranceSize};
-use super::extract::Extracted;
+use super::extracted::Extracted;
 use super::extraction::Extraction;
 use super::fit::Fit;
+use super::judged::{Judged, Kind, Moved, Part, Role};
 use super::motion_behind::MotionBehind;
 use super::price::Price;
 use super::printed::{Printed, PrintedUnit};
 use super::resonance::PrintedPeak;
 use super::tally::{Decision, Outcome};
-use super::text::measured;
-use super::verdict::{Comparison, Judged, Kind, Moved, NoTable, Part, Role, Verdict};
-use super::view::{Absence, Reads, Tables, View};
+use super::verdict::Verdict;
+use super::view::{Reads, Tables, View};
 use crate::experiment::assumption_of;
 use crate::table::BASELINE;
 
@@ -279,7 +281,7 @@ fn value(
         }
     };
     let moved: Vec<Moved> = others.iter().map(description).collect();
-    let mut found = measured(&comparison, published);
+    let mut found = comparison.measured(published);
     if let Some(remark) = remark {
         found = format!("{found}; {remark}");
     }

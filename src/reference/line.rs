@@ -1,9 +1,10 @@
 //! Features of lines: where the top is and how well the grid knows it, where two lines part, how many peaks there are.
 
+use super::absence::Absence;
 use super::compare::COVERAGE;
 use super::selection::{Allowed, same};
 use super::text::{place, with_unit};
-use super::view::{Absence, Cell, Line, Source, View};
+use super::view::{Cell, Line, Source, View};
 use crate::measure::column_words;
 use crate::optimise::{Point, overshoot};
 use crate::yaml::At;

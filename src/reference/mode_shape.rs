@@ -4,6 +4,7 @@
 use serde::Serialize;
 use serde_json::json;
 
+use super::absence::Absence;
 use super::analytic;
 use super::fit::{Fit, FitMeasure};
 use super::mapping::{Reads, Seen, claim, forms};
@@ -11,7 +12,7 @@ use super::name::Column;
 use super::tally::{Decision, Tally};
 use super::text::significant;
 use super::tube::points;
-use super::view::{Absence, View};
+use super::view::View;
 use crate::yaml::{At, Value};
 
 claim! {

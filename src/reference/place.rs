@@ -6,12 +6,13 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
+use super::absence::Absence;
 use super::mapping::{Reads, Seen, claim};
 use super::name::Column;
 use super::selection::{Allowed, is_number, same};
 use super::tally::{Decision, Outcome, Shown, Tally, strict};
 use super::text::{percent, significant, with_unit};
-use super::view::{Absence, Cell, Source, View};
+use super::view::{Cell, Source, View};
 use super::words;
 use crate::yaml::At;
 

@@ -9,8 +9,8 @@
 //! | `{here: ch6-plate-c1-light/uniform}` | of an entry of another experiment; the reasons of assumptions name all entries so |
 //! | `{here: crossing, mass_on_plates=total}` | with one assumption moved |
 
+use super::judged::Judged;
 use super::printed::symbols;
-use super::verdict::Judged;
 use crate::text::braces::{Part, Unclosed, parts};
 
 /// A text in pieces.

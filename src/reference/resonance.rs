@@ -6,14 +6,15 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::absence::Absence;
 use super::compare::COVERAGE;
-use super::extract::Extracted;
+use super::extracted::Extracted;
 use super::mapping::{Reads, mapping, word};
 use super::name::Column;
 use super::printed::Printed;
 use super::selection::Selection;
 use super::text::{symbol, with_unit};
-use super::view::{Absence, Cell, Line, View};
+use super::view::{Cell, Line, View};
 use crate::measure::column_words;
 use crate::optimise::{Parabola, Point};
 use crate::yaml::At;

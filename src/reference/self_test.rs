@@ -12,9 +12,10 @@ use super::decide::decide;
 use super::entry::{Check, Entry, ReferenceFile};
 use super::extraction::Extraction;
 use super::judge::judge_noting;
+use super::judged::Judged;
 use super::predicate::Predicate;
 use super::resonance::{Feature, Peak};
-use super::verdict::{Judged, Verdict};
+use super::verdict::Verdict;
 use super::view::{Read, Reads, Role, TableState, Tables, View};
 use crate::table::{BASELINE, Table};
 

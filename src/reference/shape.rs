@@ -1,11 +1,12 @@
 //! Claims about the shape of a line: monotone, straight, levelling off, its peaks and onsets.
 
+use super::absence::Absence;
 use super::claims::{GreatestAtEnd, LevelsOff, Linear, Monotone, Onsets, Part, Peaks};
 use super::compare::COVERAGE;
 use super::extraction::{Direction, Side};
 use super::tally::{Decision, Outcome, Tally};
 use super::text::{percent, place, symbol, with_unit};
-use super::view::{Absence, View};
+use super::view::View;
 
 pub(crate) fn monotone(claim: &Monotone, view: &View<'_>) -> Result<Decision, Absence> {
     let mut line = view.line(claim.source(), &claim.of, &claim.over, None)?;

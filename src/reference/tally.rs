@@ -1,8 +1,8 @@
 //! Requirements with their margins: the worst one speaks for a claim.
 
+use super::absence::Absence;
 use super::compare::COVERAGE;
 use super::text::{percents, with_error};
-use super::view::Absence;
 
 /// What a predicate is worth, best first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

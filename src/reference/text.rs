@@ -2,17 +2,13 @@
 
 use serde::de::DeserializeOwned;
 
-use super::compare::COVERAGE;
-use super::extract::Extracted;
-use super::printed::Printed;
-use super::verdict::Comparison;
 use crate::experiment::Parameter;
 use crate::measure::{Measure, column_words};
 use crate::text::number;
 
 /// Digits with which numbers of a list are told apart at first, and at most.
 const LIST_DIGITS: usize = 4;
-const MOST_DIGITS: usize = 10;
+pub(super) const MOST_DIGITS: usize = 10;
 
 /// `x` to `digits` significant digits, trailing zeros dropped.
 pub(crate) fn significant(x: f64, digits: usize) -> String {
@@ -88,45 +84,9 @@ pub(crate) fn apart(values: &[(f64, &str)]) -> Vec<String> {
     (LIST_DIGITS..MOST_DIGITS).map(texts).find(|texts| !clash(texts)).unwrap_or_else(|| texts(MOST_DIGITS))
 }
 
-/// As [`apart`], of numbers that were taken out of tables.
-pub(crate) fn listed(values: &[Extracted]) -> Vec<String> {
-    apart(&values.iter().map(|one| (one.value, one.unit.as_str())).collect::<Vec<_>>())
-}
-
 /// A column as formulas name it: `f′` for `force_ratio`; in words where it has no symbol.
 pub(crate) fn symbol(column: &str) -> String {
     let parameter = known::<Parameter>(column).map(Parameter::symbol);
     let symbol = parameter.or_else(|| known::<Measure>(column).map(Measure::symbol)).unwrap_or_default();
     if symbol.is_empty() { column_words(column) } else { symbol.into() }
-}
-
-/// What came out beside what is published, in the unit of the publication: `628 ± 65 mm/s, 21 % below 794.8 mm/s`. An instant,
-/// with the time `scale` between two of its kind, is told by the time between: `52.327 ± 0.010 s, 17 ms after 52.31 s: 3.4 u_val,
-/// 4.6 % of the time between two such events`.
-pub(crate) fn measured(comparison: &Comparison, published: &Printed) -> String {
-    let factor = comparison.in_unit_of(published);
-    let (here, wide) = (comparison.simulated * factor, COVERAGE * comparison.u_val() * factor);
-    let unit = if published.unit().is_empty() { String::new() } else { format!(" {}", published.unit()) };
-    // Of a count that all runs agree on, rounding is all there is.
-    let here = if comparison.u_data == 0.0 && wide < 1e-9 * here.abs() {
-        significant(here, MOST_DIGITS)
-    } else {
-        let (value, uncertainty) = number::with_uncertainty(here, wide);
-        format!("{value} ± {uncertainty}{unit}")
-    };
-    let (error, datum) = (comparison.error(), published.text());
-    let side = |above: &'static str, below: &'static str| if error < 0.0 { below } else { above };
-    if let Some(scale) = comparison.scale {
-        let (late, units) = (with_unit(error.abs(), 2, "s"), significant(comparison.deviation(), 2));
-        let share = percent(error.abs() / scale);
-        return format!(
-            "{here}, {late} {} {datum}: {units} u_val, {share} of the time between two such events",
-            side("after", "before")
-        );
-    }
-    match error.abs() / comparison.published.abs() {
-        off if off.is_finite() && off > 0.0 => format!("{here}, {} {} {datum}", percent(off), side("above", "below")),
-        0.0 => format!("{here}, equal to {datum}"),
-        _ => format!("{here}; the study: {datum}"),
-    }
 }

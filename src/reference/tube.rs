@@ -5,13 +5,14 @@
 //! computed point within the published range to the published curve, and each published point to the computed curve, so
 //! that a peak that is not there shows as one that should not be.
 
+use super::absence::Absence;
 use super::claims::{Within, within};
 use super::fit::{Fit, FitMeasure};
 use super::mapping::{claim, mapping};
 use super::name::Column;
 use super::tally::{Decision, Tally};
 use super::text::{significant, symbol, with_unit};
-use super::view::{Absence, Line, View};
+use super::view::{Line, View};
 use crate::yaml::At;
 
 claim! {

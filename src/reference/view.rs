@@ -6,12 +6,11 @@
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::absence::{Absence, NoTable, WhyNoTable};
 use super::columns::{Found, find, find_if_any, height, labels, parameter};
 use super::selection::{Allowed, Selection, same};
 use super::text::{known, significant, symbol, with_unit};
-use super::verdict::{NoTable, WhyNoTable};
-use crate::experiment::SearchPoint;
-use crate::experiment::{Parameter, assumption_of};
+use crate::experiment::{Parameter, SearchPoint, assumption_of};
 use crate::table::{BASELINE, Data, Table, UNKNOWN};
 use crate::text::name;
 use crate::text::words::EVENT_DRIVEN;
@@ -36,35 +35,6 @@ pub enum TableState<'a> {
 
 /// Tables by experiment; one that is not listed has not been run.
 pub type Tables<'a> = BTreeMap<String, TableState<'a>>;
-
-/// Why there is no number.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Absence {
-    /// No row is meant by the conditions.
-    NoRow(String),
-    /// There is no table, or none that counts.
-    NoTable { table: NoTable, reason: String },
-    /// The rows are there, what they should hold is not: no column, NaN, failed.
-    Broken(String),
-    /// All is there, but what the entry speaks of does not happen: no crossing, no parting.
-    Nowhere(String),
-}
-
-impl Absence {
-    pub(crate) fn reason(&self) -> &str {
-        match self {
-            Self::NoTable { reason, .. } | Self::NoRow(reason) | Self::Broken(reason) | Self::Nowhere(reason) => reason,
-        }
-    }
-
-    /// The table that is not there.
-    pub(crate) fn no_table(&self) -> Option<&NoTable> {
-        match self {
-            Self::NoTable { table, .. } => Some(table),
-            Self::NoRow(_) | Self::Broken(_) | Self::Nowhere(_) => None,
-        }
-    }
-}
 
 /// What a cell was read as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -2,6 +2,7 @@
 
 pub(crate) mod cholesky;
 pub(crate) mod complexes;
+pub(crate) mod dense;
 pub(crate) mod elementary;
 pub(crate) mod elimination;
 pub(crate) mod exact;

@@ -12,7 +12,8 @@
 
 use nalgebra::{Complex, DMatrix};
 
-use crate::contact_state::spectral::{Spectral, inverse_of_unit_upper, piece, product};
+use crate::arithmetic::dense::{inverse_of_unit_upper, piece, product};
+use crate::contact_state::spectral::Spectral;
 
 type C = Complex<f64>;
 
@@ -300,7 +301,7 @@ mod tests {
         let mut held_together = 0;
         for apart in (-200..=200).map(|step| f64::from(step) * 1e-4).chain([-1e-7, 1e-9, 1e-13]) {
             let entries = tuned_damper(apart);
-            let split = Spectral::split(4, &entries).unwrap();
+            let split = crate::contact_state::schur_split::split(4, &entries).unwrap();
             held_together += i32::from(split.lasts.is_finite());
             let a = DMatrix::from_row_slice(4, 4, &entries);
             let t = split.lasts.min(7.0);

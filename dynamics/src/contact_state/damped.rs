@@ -20,11 +20,12 @@ use std::cell::RefCell;
 use nalgebra::DMatrix;
 
 use crate::arithmetic::complexes::Complexes;
+use crate::arithmetic::dense::invert_again;
 use crate::arithmetic::four::Four;
 use crate::arithmetic::lanes::WIDTH;
 use crate::arithmetic::wide::widened;
 use crate::contact_state::block::Block;
-use crate::contact_state::spectral::{Spectral, invert_again};
+use crate::contact_state::spectral::Spectral;
 use crate::contact_state::undamped::NormalModes;
 
 /// Newton's steps; three are usual.

@@ -21,6 +21,7 @@ pub(crate) mod load;
 pub(crate) mod modes;
 mod resonance;
 mod rigid;
+mod schur_split;
 pub(crate) mod spectral;
 mod undamped;
 

@@ -9,10 +9,12 @@
 use nalgebra::DMatrix;
 
 use crate::arithmetic::cholesky::Cholesky;
+use crate::arithmetic::dense::{by_rows, product};
 use crate::arithmetic::matrix::Matrix;
 use crate::contact_state::alike::Alike;
 use crate::contact_state::rigid::RigidMotions;
-use crate::contact_state::spectral::{Spectral, by_rows, product};
+use crate::contact_state::schur_split;
+use crate::contact_state::spectral::Spectral;
 use crate::contact_state::undamped::NormalModes;
 use crate::error::EngineError;
 
@@ -173,7 +175,7 @@ fn coupled(halves: &[DMatrix<f64>; 2], chosen: &[usize]) -> Result<Spectral, Eng
             matrix[(count + i) * 2 * count + count + j] = halves[1][(row, column)];
         }
     }
-    let mut split = Spectral::split(2 * count, &matrix)?;
+    let mut split = schur_split::split(2 * count, &matrix)?;
     let width = split.width();
     for (row, frequency) in split.from_blocks.chunks_exact_mut(width).zip(&frequencies) {
         row.iter_mut().for_each(|entry| *entry /= frequency);

@@ -5,9 +5,9 @@ use nalgebra::{DMatrix, DVector};
 use super::recurrence::Scale;
 use super::tangent::Tangent;
 use super::tape::{Cycle, Step, Tape};
+use crate::arithmetic::dense::piece;
 use crate::arithmetic::schur::schur;
 use crate::contact_state::block::Block;
-use crate::contact_state::spectral::piece;
 use crate::error::EngineError;
 use crate::system::HybridSystem;
 
