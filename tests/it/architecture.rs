@@ -101,15 +101,9 @@ fn imports_go_one_way() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Files and folders side by side that still import each other in a ring: knots to be cut, not to be added to.
-const KNOTS: [&str; 6] = [
-    "dynamics/src/contact_state: cluster spectral",
-    "src/experiment/recipe: assumption_sheet given parameter parts place slot structure swept",
-    "src/experiment: scene structure",
-    "src/figure: contact legend paint panel quoted render strip",
-    "src/reference: average columns compare extract extraction line mapping motion_behind price printed resonance text verdict view",
-    "src/yaml: at choice keys",
-];
+/// Files and folders side by side that import each other in a ring. What stands at a place of a file has keys or is a choice, and each of
+/// these leads to places again: that ring is in the matter.
+const KNOTS: [&str; 1] = ["src/yaml: at choice keys"];
 
 /// Within a folder, too.
 #[test]

@@ -16,12 +16,13 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::given::{AssumptionName, AssumptionValue, Assumptions};
+use super::assumption::{AssumptionName, AssumptionValue};
+use super::quantity::AssumptionKind;
 use super::slot::Slot;
 use crate::experiment::stated::{StatedByChapter, Statement};
 use crate::yaml::reader::{no_such, scalar};
 use crate::yaml::word::closest;
-use crate::yaml::{Dimension, Findings, Node, Place, Problems};
+use crate::yaml::{Findings, Node, Place, Problems};
 
 /// The name of the file within a study.
 pub const ASSUMPTIONS: &str = "experiments/assumptions.yaml";
@@ -69,113 +70,18 @@ pub struct AssumptionEntry {
     pub place: Place,
 }
 
-/// What kind of value an assumption has: a quantity, one of named readings, or either.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct AssumptionKind {
-    /// What its numbers are; none for readings alone.
-    pub quantity: Option<Quantity>,
-    /// Its readings.
-    pub readings: Vec<String>,
-}
-
-/// What a number, or a curve, is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Quantity {
-    /// Dimensionless, zero or more.
-    Ratio,
-    /// A whole number, one or more.
-    Count,
-    /// A damping curve.
-    #[serde(rename = "damping_curve")]
-    Curve,
-    /// One place or several, as shares of the sides.
-    Places,
-    /// Of this dimension.
-    #[serde(untagged)]
-    Of(Dimension),
-}
-
-/// What a place of a scene takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Takes<'a> {
-    /// Numbers, or a curve.
-    pub quantity: Option<Quantity>,
-    /// Readings.
-    pub readings: &'a [&'a str],
-}
-
-impl Takes<'_> {
-    /// Of this dimension.
-    #[must_use]
-    pub fn quantity(dimension: Dimension) -> Self {
-        Self { quantity: Some(Quantity::Of(dimension)), readings: &[] }
-    }
-
-    /// Dimensionless.
-    #[must_use]
-    pub fn ratio() -> Self {
-        Self { quantity: Some(Quantity::Ratio), readings: &[] }
-    }
-
-    /// A number of things.
-    #[must_use]
-    pub fn count() -> Self {
-        Self { quantity: Some(Quantity::Count), readings: &[] }
-    }
-
-    /// Every value of the kind has a meaning here.
-    #[must_use]
-    pub fn admits(self, kind: &AssumptionKind) -> bool {
-        (kind.quantity.is_none() || kind.quantity == self.quantity)
-            && kind.readings.iter().all(|reading| self.readings.contains(&reading.as_str()))
-    }
-
-    /// In words: `a length`, `one of clean, loaded`.
-    #[must_use]
-    pub fn words(self) -> String {
-        in_words(self.quantity, self.readings)
-    }
-}
-
-impl AssumptionKind {
-    /// In words.
-    #[must_use]
-    pub fn words(&self) -> String {
-        let readings: Vec<&str> = self.readings.iter().map(String::as_str).collect();
-        in_words(self.quantity, &readings)
-    }
-
-    /// Unit symbol of its numbers, empty when dimensionless.
-    #[must_use]
-    pub fn unit(&self) -> &'static str {
-        match self.quantity {
-            Some(Quantity::Of(dimension)) => dimension.unit(),
-            Some(Quantity::Curve) => Dimension::Damping.unit(),
-            Some(Quantity::Ratio | Quantity::Count | Quantity::Places) | None => "",
-        }
-    }
-}
-
-fn in_words(quantity: Option<Quantity>, readings: &[&str]) -> String {
-    let quantity = quantity.map(|quantity| match quantity {
-        Quantity::Of(dimension) => dimension.name(),
-        Quantity::Ratio => "a dimensionless number",
-        Quantity::Count => "a whole number",
-        Quantity::Curve => "a damping curve",
-        Quantity::Places => "a list of places",
-    });
-    let readings = if readings.is_empty() { None } else { Some(format!("one of {}", readings.join(", "))) };
-    match (quantity, readings) {
-        (Some(quantity), Some(readings)) => format!("{quantity} or {readings}"),
-        (Some(quantity), None) => quantity.into(),
-        (None, readings) => readings.unwrap_or_default(),
-    }
-}
-
 /// The assumption that is moved under this label, `assumption=value`; another text as it is.
 pub(crate) fn assumption_of(label: &str) -> &str {
     label.split_once('=').map_or(label, |(name, _)| name)
+}
+
+/// The assumptions in force: a value for each, and the sheet that declares them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Assumptions {
+    /// The values.
+    pub values: BTreeMap<AssumptionName, AssumptionValue>,
+    /// Where they are declared.
+    pub sheet: Arc<AssumptionSheet>,
 }
 
 /// One assumption moved to a value of its range.

@@ -2,10 +2,11 @@
 
 use std::f64::consts::TAU;
 
+use super::error::RecipeError;
 use super::given::Given;
 use super::parts::{
-    Carried, ExcitationKind, ExcitationRecipe, ForcingOrNatural, ImpulseTime, ImpulseTimeRecipe, RecipeError,
-    StrengthRecipe, TimingRecipe,
+    Carried, ExcitationKind, ExcitationRecipe, ForcingOrNatural, ImpulseTime, ImpulseTimeRecipe, StrengthRecipe,
+    TimingRecipe,
 };
 use super::place::PlaceRecipe;
 use super::resolve::{Base, above};

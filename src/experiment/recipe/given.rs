@@ -1,79 +1,19 @@
-//! Assumptions in force, and what of a recipe they stand for.
+//! What of a recipe assumptions stand for.
 //!
 //! A slot of a recipe is [`Given`]: stated, or the name of an assumption. [`Inputs`] turns it into its value and records the
 //! name, so that what a scene depends on is what was read while it was resolved.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::assumption_sheet::{ASSUMPTIONS, AssumptionSheet};
-use super::parts::RecipeError;
+use super::assumption::{AssumptionName, AssumptionValue};
+use super::assumption_sheet::{ASSUMPTIONS, Assumptions};
+use super::error::RecipeError;
 use super::slot::Slot;
-use crate::scene::{Curve, FieldValue, Take, whole};
-use crate::yaml::word::{from_word, word_of};
-
-/// The name of an assumption, as the assumptions file declares it.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(into = "String", from = "String")]
-pub struct AssumptionName(Arc<str>);
-
-impl AssumptionName {
-    /// The word in YAML, in tables and in reports.
-    #[must_use]
-    pub fn as_str(&self) -> &str {
-        &self.0
-    }
-}
-
-impl From<String> for AssumptionName {
-    fn from(name: String) -> Self {
-        Self(name.into())
-    }
-}
-
-impl From<&str> for AssumptionName {
-    fn from(name: &str) -> Self {
-        Self(name.into())
-    }
-}
-
-impl From<AssumptionName> for String {
-    fn from(name: AssumptionName) -> Self {
-        name.0.as_ref().into()
-    }
-}
-
-impl std::fmt::Display for AssumptionName {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-/// The value of one assumption.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum AssumptionValue {
-    /// A number, SI or dimensionless.
-    Number(f64),
-    /// One of named readings of the source.
-    Choice(String),
-    /// A curve through points.
-    Curve(Curve),
-    /// Places, each of one coordinate a side, as shares of the sides.
-    Places(Vec<Vec<f64>>),
-}
-
-/// The assumptions in force: a value for each, and the sheet that declares them.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Assumptions {
-    /// The values.
-    pub values: BTreeMap<AssumptionName, AssumptionValue>,
-    /// Where they are declared.
-    pub sheet: Arc<AssumptionSheet>,
-}
+use crate::scene::{Curve, FieldValue, whole};
+use crate::yaml::word::word_of;
 
 /// A value that an experiment states, or the name of the assumption that stands for it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -138,48 +78,6 @@ impl Assumable for Count {
         if let AssumptionValue::Number(number) = value { whole(*number).ok().map(Self) } else { None }
     }
 }
-
-/// Readings whose words are their names in snake case.
-macro_rules! readings {
-    ($($Type:ty),*) => {
-        $(impl Assumable for $Type {
-            fn of(value: &AssumptionValue) -> Option<Self> {
-                if let AssumptionValue::Choice(word) = value { from_word(word) } else { None }
-            }
-        })*
-    };
-}
-readings!(
-    Take,
-    super::Carried,
-    super::Reference,
-    super::ArrayOrder,
-    super::ForcingOrNatural,
-    super::MeanRatio,
-    crate::measure::Comparison
-);
-
-/// A number, or a reading in its place.
-macro_rules! numbers_or_readings {
-    ($($Type:ident::$Number:ident),*) => {
-        $(impl Assumable for super::$Type {
-            fn of(value: &AssumptionValue) -> Option<Self> {
-                match value {
-                    AssumptionValue::Number(number) => Some(Self::$Number(*number)),
-                    AssumptionValue::Choice(word) => from_word(word),
-                    AssumptionValue::Curve(_) | AssumptionValue::Places(_) => None,
-                }
-            }
-        })*
-    };
-}
-numbers_or_readings!(
-    MassReading::Share,
-    FloorStiffness::Stiffness,
-    ImpulseTime::Seconds,
-    ContactDampingRatio::Ratio,
-    ContactDampingConstant::Constant
-);
 
 /// The assumptions in force while a recipe is resolved, with a record of those that were read.
 #[derive(Debug)]

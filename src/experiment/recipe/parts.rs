@@ -4,14 +4,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::assumption_sheet::ASSUMPTIONS;
-use super::given::{AssumptionName, Given};
-use super::parameter::Parameter;
-use super::place::PlaceRecipe;
+use super::error::RecipeError;
+use super::given::Given;
+use super::place::{ArrayRecipe, PlaceRecipe};
 use super::structure::StructureRecipe;
 use super::swept::SweptSlots;
 use crate::measure::Comparison;
-use crate::scene::{Curve, PulseShape, Start, StartError, StructureError, Take};
+use crate::scene::{Curve, PulseShape, Start, Take};
 
 /// A scene as an experiment names it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -103,33 +102,6 @@ pub struct DamperRecipe {
     /// What of it a sweep sets.
     #[serde(skip)]
     pub swept: SweptSlots,
-}
-
-/// An array of equal dampers.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ArrayRecipe {
-    /// How many along each side, or one number for all of them.
-    pub count: Vec<u32>,
-    /// Distance along each side, or the same along all, m.
-    pub spacing: Vec<f64>,
-    /// Centred on its place; else it begins there.
-    pub centred: bool,
-    /// Distance that it keeps from the ends of the structure, m: one that would come nearer is moved inwards as a whole.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub margin: Option<Given>,
-    /// In which order gaps are given to its dampers; by columns unless it is stated.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub order: Option<Given<ArrayOrder>>,
-}
-
-/// In which order the dampers of an array are counted, from the corner where both sides start.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ArrayOrder {
-    /// Along the second side first.
-    Columns,
-    /// Along the first side first.
-    Rows,
 }
 
 /// Mass of particle and enclosure.
@@ -447,120 +419,4 @@ pub enum TimingRecipe {
     AngularFrequency(Given),
     /// The clean structure's natural frequency of this number.
     ForcedMode(u32),
-}
-
-/// Why a recipe has no scene.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum RecipeError {
-    /// The scene lacks what the sweep varies.
-    #[error("the sweep varies {parameter:?}, but the scene has {what}")]
-    NothingToVary {
-        /// Which parameter.
-        parameter: Parameter,
-        /// What the scene has instead.
-        what: &'static str,
-    },
-    /// An assumption is needed and absent from the file, or of another kind.
-    #[error("the assumption `{0}` is not declared in {ASSUMPTIONS}, or is of another kind")]
-    Assumption(AssumptionName),
-    /// A value that physics refuses.
-    #[error("{message}")]
-    OutOfRange {
-        /// What is wrong with it.
-        message: String,
-        /// The part of the scene that it belongs to, where that is known.
-        part: Option<Part>,
-        /// The key in that part under which it is written, if it is not the part's own.
-        under: Option<&'static str>,
-        /// Words by which it is written there, or swept; the first that is there is meant.
-        keys: Vec<&'static str>,
-    },
-    /// A force acts, or motion is observed, where the structure does not move.
-    #[error(
-        "{what} stands where {structure} does not move, since every mode shape is zero there: move it off the support"
-    )]
-    Still {
-        /// Which part.
-        part: Part,
-        /// The force, or what is observed.
-        what: &'static str,
-        /// The structure.
-        structure: &'static str,
-    },
-}
-
-impl RecipeError {
-    /// A value that physics refuses, of a place to be named.
-    pub(super) fn out_of_range(message: impl Into<String>) -> Self {
-        Self::OutOfRange { message: message.into(), part: None, under: None, keys: Vec::new() }
-    }
-
-    /// Names the part of the scene, unless that is done.
-    pub(super) fn within(mut self, within: Part) -> Self {
-        if let Self::OutOfRange { part, .. } = &mut self {
-            part.get_or_insert(within);
-        }
-        self
-    }
-
-    /// Names the key in the part under which the value is written, as `floor`.
-    pub(super) fn under(mut self, key: &'static str) -> Self {
-        if let Self::OutOfRange { under, .. } = &mut self {
-            under.get_or_insert(key);
-        }
-        self
-    }
-
-    /// Names the words by which the value is written or swept, unless that is done.
-    pub(super) fn at_keys(mut self, words: &[&'static str]) -> Self {
-        if let Self::OutOfRange { keys, .. } = &mut self
-            && keys.is_empty()
-        {
-            keys.extend(words);
-        }
-        self
-    }
-}
-
-/// A part of a scene that a refusal is about.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Part {
-    /// The structure.
-    Structure,
-    /// A damper, by its place in the file.
-    Damper(usize),
-    /// The excitation.
-    Excitation,
-    /// What is observed.
-    Observe,
-    /// Initial conditions.
-    Start,
-}
-
-impl Part {
-    /// Words by which its place is written, or swept.
-    pub(crate) fn place_keys(self) -> &'static [&'static str] {
-        match self {
-            Self::Damper(_) => &["at", "damper_x", "damper_y", "place"],
-            Self::Excitation => &["at", "force_x", "force_y", "place"],
-            Self::Structure | Self::Observe | Self::Start => &[],
-        }
-    }
-
-    /// Any damper stands for all of them.
-    pub(crate) fn kind(self) -> Self {
-        if let Self::Damper(_) = self { Self::Damper(0) } else { self }
-    }
-}
-
-impl From<StructureError> for RecipeError {
-    fn from(error: StructureError) -> Self {
-        Self::out_of_range(error.message).within(Part::Structure).at_keys(error.key.as_slice())
-    }
-}
-
-impl From<StartError> for RecipeError {
-    fn from(error: StartError) -> Self {
-        Self::out_of_range(error.0).within(Part::Start)
-    }
 }

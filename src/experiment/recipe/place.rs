@@ -2,8 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::given::{AssumptionName, Given, Inputs, PlaceList};
-use super::parts::{ArrayOrder, ArrayRecipe, Part, RecipeError};
+use super::assumption::AssumptionName;
+use super::error::RecipeError;
+use super::given::{Given, Inputs, PlaceList};
+use super::part::Part;
 use crate::scene::{Kind, Model, Point};
 
 /// A place, one coordinate a side; none on a single mass.
@@ -27,6 +29,33 @@ pub enum Coordinate {
         /// Which side, from 0.
         side: usize,
     },
+}
+
+/// An array of equal dampers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ArrayRecipe {
+    /// How many along each side, or one number for all of them.
+    pub count: Vec<u32>,
+    /// Distance along each side, or the same along all, m.
+    pub spacing: Vec<f64>,
+    /// Centred on its place; else it begins there.
+    pub centred: bool,
+    /// Distance that it keeps from the ends of the structure, m: one that would come nearer is moved inwards as a whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub margin: Option<Given>,
+    /// In which order gaps are given to its dampers; by columns unless it is stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub order: Option<Given<ArrayOrder>>,
+}
+
+/// In which order the dampers of an array are counted, from the corner where both sides start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ArrayOrder {
+    /// Along the second side first.
+    Columns,
+    /// Along the first side first.
+    Rows,
 }
 
 impl PlaceRecipe {

@@ -7,11 +7,15 @@
 use std::cell::LazyCell;
 use std::collections::BTreeSet;
 
-use super::given::{AssumptionName, Assumptions, Given, Inputs};
+use super::assumption::AssumptionName;
+use super::assumption_sheet::Assumptions;
+use super::error::RecipeError;
+use super::given::{Given, Inputs};
+use super::part::Part;
 use super::parts::{
     Carried, ContactDampingConstant, ContactDampingRatio, ContactDampingRecipe, DamperRecipe, Filling, FloorStiffness,
-    GapRecipe, MassReading, MassRecipe, MeanRatio, ObserveRecipe, Part, PointsRecipe, Recipe, RecipeError, Reference,
-    StiffnessRecipe, StopRecipe, SurfaceRecipe, TimingRecipe,
+    GapRecipe, MassReading, MassRecipe, MeanRatio, ObserveRecipe, PointsRecipe, Recipe, Reference, StiffnessRecipe,
+    StopRecipe, SurfaceRecipe, TimingRecipe,
 };
 use super::place::{PlaceRecipe, Places};
 use super::slot::Slot;

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::assumption_sheet::{Quantity, Takes};
+use super::quantity::{Quantity, Takes};
 use crate::yaml::Dimension;
 
 macro_rules! slots {

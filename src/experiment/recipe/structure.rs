@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::error::RecipeError;
 use super::given::{Count, Given, Inputs};
 use super::parameter::Parameter;
-use super::parts::RecipeError;
 use crate::scene::{FieldValue, Form, Kind, Structure, Values, whole};
 use crate::yaml::word::word_of;
 
