@@ -26,10 +26,42 @@ pub(super) struct RowFingerprints<'a> {
 
 impl<'a> RowFingerprints<'a> {
     pub(super) fn new(experiment: &'a Experiment) -> Self {
-        let Experiment { settings, measures, maximise, mean_over, .. } = experiment;
+        // Every field is named: a new one is hashed here, or with each row, or has no say.
+        let Experiment {
+            settings,
+            measures,
+            maximise,
+            mean_over,
+            starts,
+            // With each row: its scene, and what is asked of it.
+            recipe: _,
+            cases: _,
+            transient: _,
+            trace: _,
+            energies: _,
+            shape: _,
+            each_cycle: _,
+            tolerances: _,
+            // Which rows there are, and in what order.
+            swept: _,
+            solvers: _,
+            refined: _,
+            continued: _,
+            moved: _,
+            optimise: _,
+            orbit: _,
+            // What it is called, what is drawn of it, and how far it may go.
+            id: _,
+            title: _,
+            source: _,
+            about: _,
+            limit: _,
+            figures: _,
+            without_source: _,
+        } = experiment;
         let mut shared = blake3::Hasher::new();
         feed(&mut shared, &(SOLVER_VERSION, settings, measures, maximise, mean_over));
-        if let Some(starts) = &experiment.starts {
+        if let Some(starts) = starts {
             feed(&mut shared, &("starts", starts));
         }
         Self { experiment, shared }
