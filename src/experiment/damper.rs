@@ -89,6 +89,8 @@ impl SceneReader<'_> {
             let message = "a limit stop ends the compression of a resilient face, and both faces are rigid";
             return keys.get("stop")?.wrong(message);
         }
+        let rigid = json!({"required": ["rigid"]});
+        keys.rule(|| json!({"not": {"required": ["stop"], "properties": {"floor": rigid, "ceiling": rigid}}}));
         keys.close()?;
         let (floor, floor_swept) = floor?;
         let (ceiling, ceiling_swept) = ceiling?.unwrap_or_else(|| (floor.clone(), floor_swept.clone()));

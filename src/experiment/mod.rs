@@ -53,6 +53,7 @@ mod stated;
 mod structure;
 mod surface;
 mod sweep;
+mod tried_case;
 mod validate;
 
 pub use about_study::{

@@ -68,52 +68,17 @@ pub(super) fn read_optimise(at: At<'_>) -> Option<ReadOptimise> {
         candidates[..=first].rotate_right(1);
     }
     let (names, candidates_at): (Vec<Candidate>, Vec<Span>) = candidates.into_iter().unzip();
-    let (genetic, cma_es, dense, stop) = (genetic?, cma_es?, dense?, stop?.unwrap_or_default());
-    let polish = polish?;
+    let (searches, stop) = ([genetic?, cma_es?, dense?], stop?.unwrap_or_default());
+    let (polish, polish_at) = polish?.unzip();
     let (two_opt, two_opt_of) = two_opt?.unwrap_or_default();
-    if let Some(Search::Genetic { start, .. }) = &genetic
-        && let Some(name) = start.iter().find(|name| names.iter().all(|candidate| candidate.name != **name))
-    {
-        return at.wrong(format!("`start` names `{name}`, which is none of the candidates"));
-    }
-    if let Some(name) = two_opt_of.iter().find(|name| names.iter().all(|candidate| candidate.name != **name)) {
-        return at.wrong(format!("`two_opt` names `{name}`, which is none of the candidates"));
-    }
-    if let Some(name) = two_opt_of
-        .iter()
-        .map(|name| format!("{name}_two_opt"))
-        .find(|improved| names.iter().any(|candidate| candidate.name == *improved))
-    {
-        return at.wrong(format!("`{name}` is what 2-opt finds: call the candidate otherwise"));
-    }
-    if genetic.is_none() && two_opt {
-        return at.wrong("2-opt improves what the genetic algorithm has found: add `genetic`");
-    }
-    if (genetic.is_some() && stop.generations.is_none() || cma_es.is_some() && genetic.is_none())
-        && stop.evaluations.is_none()
-    {
-        let help = if genetic.is_some() {
-            "add `stop: {generations: …}` or `stop: {evaluations: …}`"
-        } else {
-            "CMA-ES alone is bounded by evaluations: add `stop: {evaluations: …}`"
-        };
-        let help = help.to_owned();
-        return at.report("nothing bounds this search", Some(help));
-    }
-    if let (Some((_, polish_at)), false) = (&polish, matches!(measure, Measure::RmsVelocity | Measure::VelocityRatio)) {
-        let help = "optimise `rms_velocity` or `velocity_ratio`, or leave `polish` out".to_owned();
-        return at.report_at(*polish_at, "polishing follows the derivatives of the RMS velocity", Some(help));
-    }
-    if genetic.is_none() && cma_es.is_none() && dense.is_none() && landscape == Some(None) && names.is_empty() {
-        return at.wrong("there is nothing to evaluate: name candidates or a search");
-    }
+    let has_landscape = landscape != Some(None);
     let optimise = Optimise {
         goal,
         measure,
         gaps,
         bounds: Vec::new(),
         candidates: names,
-        searches: [genetic, cma_es, dense, polish.map(|(polish, _)| polish)].into_iter().flatten().collect(),
+        searches: searches.into_iter().flatten().chain(polish).collect(),
         seeds: seeds?.unwrap_or_else(|| vec![1]),
         two_opt,
         two_opt_of,
@@ -124,7 +89,51 @@ pub(super) fn read_optimise(at: At<'_>) -> Option<ReadOptimise> {
         stalled: stop.stalled,
         landscape: landscape?,
     };
+    check(at, &optimise, has_landscape, polish_at)?;
     Some(ReadOptimise { optimise, bounds, bounds_at, candidates_at, span: at.span() })
+}
+
+/// Its parts fit together.
+fn check(at: At<'_>, optimise: &Optimise, has_landscape: bool, polish_at: Option<Span>) -> Option<()> {
+    let Optimise { measure, candidates, searches, two_opt, two_opt_of, generations, evaluations, .. } = optimise;
+    let is_candidate = |name: &str| candidates.iter().any(|candidate| candidate.name == name);
+    let lacks = |names: &[String]| names.iter().find(|name| !is_candidate(name)).cloned();
+    let has = |wanted: fn(&Search) -> bool| searches.iter().any(wanted);
+    let genetic = has(|search| matches!(search, Search::Genetic { .. }));
+    let cma_es = has(|search| matches!(search, Search::CmaEs { .. }));
+    for search in searches {
+        if let Search::Genetic { start, .. } = search
+            && let Some(name) = lacks(start)
+        {
+            return at.wrong(format!("`start` names `{name}`, which is none of the candidates"));
+        }
+    }
+    if let Some(name) = lacks(two_opt_of) {
+        return at.wrong(format!("`two_opt` names `{name}`, which is none of the candidates"));
+    }
+    if let Some(name) = two_opt_of.iter().map(|name| format!("{name}_two_opt")).find(|name| is_candidate(name)) {
+        return at.wrong(format!("`{name}` is what 2-opt finds: call the candidate otherwise"));
+    }
+    if !genetic && *two_opt {
+        return at.wrong("2-opt improves what the genetic algorithm has found: add `genetic`");
+    }
+    if (genetic && generations.is_none() || cma_es && !genetic) && evaluations.is_none() {
+        let help = if genetic {
+            "add `stop: {generations: …}` or `stop: {evaluations: …}`"
+        } else {
+            "CMA-ES alone is bounded by evaluations: add `stop: {evaluations: …}`"
+        };
+        return at.report("nothing bounds this search", Some(help.into()));
+    }
+    if let (Some(polish_at), false) = (polish_at, matches!(measure, Measure::RmsVelocity | Measure::VelocityRatio)) {
+        let help = "optimise `rms_velocity` or `velocity_ratio`, or leave `polish` out".to_owned();
+        return at.report_at(polish_at, "polishing follows the derivatives of the RMS velocity", Some(help));
+    }
+    let searches_anew = has(|search| !matches!(search, Search::Polish { .. }));
+    if !searches_anew && !has_landscape && candidates.is_empty() {
+        return at.wrong("there is nothing to evaluate: name candidates or a search");
+    }
+    Some(())
 }
 
 /// A length or a ratio, as the bounds are; in a description either.

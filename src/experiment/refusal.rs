@@ -13,6 +13,8 @@ use crate::yaml::{Node, Span, Value};
 pub(super) struct Places<'t> {
     /// What stands under `scene`.
     pub scene: &'t Node,
+    /// The experiment.
+    pub whole: &'t Node,
     /// What it leaves to the sweep.
     pub left_to_sweep: &'t [(Parameter, Span)],
     /// Where a parameter is swept, or where its maximum is looked for.
@@ -55,6 +57,11 @@ impl Places<'_> {
                 }
             }
             Meant::Keys(keys) => Some(written(self.scene, keys, &|_| true)),
+            Meant::Run(key) => {
+                // A sweep of a union may have solvers of its own.
+                let of_run = exactly(self.whole, "run").and_then(|run| exactly(run, key));
+                of_run.or_else(|| exactly(self.whole, key)).map(|node| node.span)
+            }
             Meant::Case => swept(&|one| case.get(one).is_some()),
         };
         found.unwrap_or(self.scene.span)
@@ -83,6 +90,8 @@ pub(super) enum Meant {
         under: Option<&'static str>,
         keys: Vec<&'static str>,
     },
+    /// The value under this key of `run`.
+    Run(&'static str),
     /// The value by one of these words.
     Keys(Vec<&'static str>),
 }

@@ -130,9 +130,10 @@ impl ExperimentReader<'_> {
         if let Some(maximise) = &experiment.maximise {
             parameters.entry(maximise.over).or_insert(places.looked_for);
         }
-        if let At::Node(scene, _) = at.under("scene") {
+        if let (At::Node(whole, _), At::Node(scene, _)) = (at, at.under("scene")) {
             let starts = sound.starts.as_ref().map(|read| read.particles_at);
-            self.checks().scenes(&experiment, &Places { scene, left_to_sweep: &sound.scene.swept, parameters, starts });
+            let left_to_sweep = &sound.scene.swept;
+            self.checks().scenes(&experiment, &Places { whole, scene, left_to_sweep, parameters, starts });
         }
         self.checks().sensitivity(sound.run.moved.as_ref(), &experiment, &self.assumptions.sheet);
         Some(experiment)

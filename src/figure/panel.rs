@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::experiment::{self, Band};
+use crate::experiment::{self, AxisScale, Band};
 use crate::table::Data;
 
 use super::axis::{Axis, Extent, Room, Tick};
@@ -85,6 +85,65 @@ fn is_part_of(part: &experiment::Panel, whole: &experiment::Panel) -> bool {
     part.x.column == whole.x.column && whole.y.iter().any(|axis| draws(&axis.column))
 }
 
+/// What curves take of the y axis, with the marks that it is to reach.
+fn y_extent(curves: &[Curve], axis: &experiment::Axis) -> Option<Extent> {
+    let samples = curves.iter().flat_map(|curve| &curve.samples);
+    let ends = samples.flat_map(|sample| [sample.y, sample.band[0], sample.band[1]]);
+    let limits = curves.iter().filter_map(|curve| curve.at_infinity.as_ref()).map(|limit| limit.y);
+    Extent::of(ends.chain(limits).chain(axis.reach.into_iter().flatten()), axis.scale)
+}
+
+/// How far curves and quoted numbers need the x axis, unless the panel says it; with some room where marks stand at its ends.
+fn x_reach(spec: &experiment::Panel, curves: &[Curve], quoted: &[&Quoted], is_marked: bool) -> Option<Reach> {
+    if let Some([least, largest]) = spec.x.range {
+        return Some(Reach { extent: Extent { least, largest }, room: Room::Tight });
+    }
+    let samples = curves.iter().flat_map(|curve| &curve.samples);
+    let seen = samples.filter(|sample| sample.y.is_finite()).map(|sample| sample.x);
+    let wanted = quoted.iter().filter_map(|one| one.x()).chain(spec.x.reach.into_iter().flatten());
+    let is_marked = is_marked || spec.markers || spec.band == Band::Seeds || quoted.iter().any(|one| one.is_point());
+    let room = if is_marked { Room::Airy } else { Room::Tight };
+    Some(Reach { extent: Extent::of(seen.chain(wanted), spec.x.scale)?, room })
+}
+
+/// The extent of curves with what is drawn beside them: quoted numbers, guides, numbers at peaks.
+fn with_what_is_beside(
+    curves: Extent,
+    spec: &experiment::Panel,
+    scale: AxisScale,
+    quoted: &[&Quoted],
+    names_guides: bool,
+) -> Extent {
+    let mut whole = quoted.iter().filter_map(|one| one.y()).fold(curves, |extent, y| extent.with(y, scale));
+    for guide in &spec.guides {
+        // Named in the legend, a guide needs no room of its own.
+        whole = if names_guides && !guide.label.is_empty() {
+            whole.with(guide.at, scale)
+        } else {
+            whole.with_guide(guide.at, scale)
+        };
+    }
+    if spec.peaks.is_some() {
+        whole = whole.with_headroom(PEAK_ROOM, scale);
+    }
+    // A bar that needs little room is shown to its ends.
+    quoted.iter().flat_map(|one| one.ends_in_y()).fold(whole, |extent, end| {
+        let longer = extent.with(end, scale);
+        if longer.span(scale) <= BAR_STRETCH * extent.span(scale) { longer } else { extent }
+    })
+}
+
+/// What the y axis is called.
+fn y_name(source: Source<'_>, spec: &experiment::Panel, curves: &[Curve], unit: &str) -> Result<String, FigureError> {
+    let mut names = spec.y.iter().map(|axis| source.label(axis)).collect::<Result<Vec<_>, _>>()?;
+    let mut columns: Vec<&str> = spec.y.iter().map(|axis| axis.column.as_str()).collect();
+    if let (true, Some(first)) = (spec.over_first, curves.first()) {
+        columns.clear();
+        names.iter_mut().for_each(|name| *name = format!("{name} over that of {}", first.name.full()));
+    }
+    Ok(label::shared(&names, &columns, unit))
+}
+
 /// One pair of axes with its curves.
 pub(super) struct Panel<'a> {
     pub spec: &'a experiment::Panel,
@@ -118,43 +177,26 @@ impl<'a> Panel<'a> {
             curves.retain(Curve::shows);
         }
         let nothing = || FigureError::Nothing { figure: source.figure.to_owned() };
-        let (x_scale, y_scale) = (spec.x.scale, spec.y.first().ok_or_else(nothing)?.scale);
-        let (x_unit, y_unit) = (&source.column(&spec.x.column)?.unit, &source.column(&spec.y[0].column)?.unit);
-
-        let samples = || curves.iter().flat_map(|curve| &curve.samples);
-        let ends = samples().flat_map(|sample| [sample.y, sample.band[0], sample.band[1]]);
-        let limits = curves.iter().filter_map(|curve| curve.at_infinity.as_ref()).map(|limit| limit.y);
-        let marks = spec.y[0].reach.into_iter().flatten();
-        let y_extent = Extent::of(ends.chain(limits).chain(marks), y_scale).ok_or_else(nothing)?;
-        let quoted: Vec<&Quoted> =
-            beside.quoted.iter().filter(|one| one.fits(spec) && one.leaves_room(y_extent, y_scale)).collect();
+        let first = spec.y.first().ok_or_else(nothing)?;
+        let (x_unit, y_unit) = (&source.column(&spec.x.column)?.unit, &source.column(&first.column)?.unit);
+        let of_curves = y_extent(&curves, first).ok_or_else(nothing)?;
+        let room = |one: &&Quoted| one.fits(spec) && one.leaves_room(of_curves, first.scale);
+        let quoted: Vec<&Quoted> = beside.quoted.iter().filter(room).collect();
         let closer = source.panels.iter().filter(|other| spec.x.range.is_none() && is_part_of(other, spec));
         let closer = closer.filter_map(|other| other.x.range).collect();
-
-        let seen = samples().filter(|sample| sample.y.is_finite()).map(|sample| sample.x);
-        let wanted = quoted.iter().filter_map(|one| one.x()).chain(spec.x.reach.into_iter().flatten());
-        let special_points: Vec<SpecialPoint> =
-            special_points(source, spec)?.into_iter().filter(|point| spec.x.shows(point.x)).collect();
+        let mut special_points = special_points(source, spec)?;
+        special_points.retain(|point| spec.x.shows(point.x));
         // Of a cloud no point lies half beyond the frame.
         let is_cloud = matches!(source.column(&spec.x.column)?.data, Data::FloatList(_))
             && curves.iter().any(|curve| curve.join == Join::Dots);
-        let marked = spec.markers
-            || spec.band == Band::Seeds
-            || quoted.iter().any(|one| one.is_point())
-            || is_cloud
-            || !special_points.is_empty();
-        let x_reach = match spec.x.range {
-            Some([least, largest]) => Reach { extent: Extent { least, largest }, room: Room::Tight },
-            None => Reach {
-                extent: Extent::of(seen.chain(wanted), x_scale).ok_or_else(nothing)?,
-                room: if marked { Room::Airy } else { Room::Tight },
-            },
-        };
+        let is_marked = is_cloud || !special_points.is_empty();
+        let x_reach = x_reach(spec, &curves, &quoted, is_marked).ok_or_else(nothing)?;
         let x = x_reach.axis(&spec.x, x_unit);
 
         // A spread that nobody can see needs no word in the legend.
-        let visible = VISIBLE_SPREAD * (y_extent.largest - y_extent.least);
-        let band = samples().any(|sample| sample.band[1] - sample.band[0] > 2.0 * visible);
+        let visible = VISIBLE_SPREAD * (of_curves.largest - of_curves.least);
+        let mut samples = curves.iter().flat_map(|curve| &curve.samples);
+        let band = samples.any(|sample| sample.band[1] - sample.band[0] > 2.0 * visible);
         let mut legend = Legend::new(&curves, spec, band, &quoted);
         let mut contacts = contacts(source, spec)?;
         contacts.retain(|contact| spec.x.shows(contact.from) || spec.x.shows(contact.to));
@@ -163,42 +205,19 @@ impl<'a> Panel<'a> {
         legend.name_instants(contacts.iter().any(|contact| contact.to - contact.from > visible), impulses.is_some());
         let strips = strip::strips(source, spec, &curves)?;
         legend.name_special_points(&special_points);
-        let mut y_extent = quoted.iter().filter_map(|one| one.y()).fold(y_extent, |extent, y| extent.with(y, y_scale));
-        for guide in &spec.guides {
-            // Beside other lines a guide is named in the legend, where it needs no room of its own.
-            y_extent = if legend.is_empty() || guide.label.is_empty() {
-                y_extent.with_guide(guide.at, y_scale)
-            } else {
-                y_extent.with(guide.at, y_scale)
-            };
-        }
-        if !legend.is_empty() {
+        let names_guides = !legend.is_empty();
+        let whole = with_what_is_beside(of_curves, spec, first.scale, &quoted, names_guides);
+        if names_guides {
             legend.name_guides(&spec.guides);
         }
         // Theirs is a scale of its own, apart from the lines.
         legend.name_motions(&strip::classes(&strips, &spec.x));
-        if spec.peaks.is_some() {
-            y_extent = y_extent.with_headroom(PEAK_ROOM, y_scale);
-        }
-        // A bar that needs little room is shown to its ends.
-        let ends = quoted.iter().flat_map(|one| one.ends_in_y());
-        y_extent = ends.fold(y_extent, |extent, end| {
-            let longer = extent.with(end, y_scale);
-            if longer.span(y_scale) <= BAR_STRETCH * extent.span(y_scale) { longer } else { extent }
-        });
-        let y = Axis::new(y_scale, y_extent, Room::Airy, y_unit).in_unit(spec.y[0].unit.as_ref());
+        let y = Axis::new(first.scale, whole, Room::Airy, y_unit).in_unit(first.unit.as_ref());
         widen_hidden(&mut curves, &y);
-        let x_name = source.label(&spec.x)?;
-        let mut y_names = spec.y.iter().map(|axis| source.label(axis)).collect::<Result<Vec<_>, _>>()?;
-        let mut y_columns: Vec<&str> = spec.y.iter().map(|axis| axis.column.as_str()).collect();
-        if let (true, Some(first)) = (spec.over_first, curves.first()) {
-            y_columns.clear();
-            y_names.iter_mut().for_each(|name| *name = format!("{name} over that of {}", first.name.full()));
-        }
         Ok(Self {
             spec,
-            x_label: label::with_unit(&x_name, &x.unit),
-            y_label: label::with_unit(&label::shared(&y_names, &y_columns, y_unit), &y.unit),
+            x_label: label::with_unit(&source.label(&spec.x)?, &x.unit),
+            y_label: label::with_unit(&y_name(source, spec, &curves, y_unit)?, &y.unit),
             legend,
             curves,
             x_reach,

@@ -192,7 +192,7 @@ fn committed_schemas_are_those_that_would_be_written() {
 }
 
 /// What a person gets wrong, each one change away from a file that is right.
-const MISTAKES: [(&str, &str); 32] = [
+const MISTAKES: [(&str, &str); 33] = [
     ("title: Limit stop", "titel: Limit stop"),
     ("title: Limit stop\n", "\n"),
     ("chapter: 3", "chapter: three"),
@@ -210,6 +210,8 @@ const MISTAKES: [(&str, &str); 32] = [
     ("gap_ratio: 50", "gap_ratio: 50\n      gap: 5 mm"),
     ("gap_ratio: 50", "at: 0.5\n      gap_ratio: 50"),
     ("resilient:", "elastic:"),
+    // A limit stop under two rigid faces.
+    ("{resilient: {stiffness_ratio: 1, damping_ratio: assumed}}", "{rigid: {restitution: 0.5}}"),
     ("stiffness_ratio: 1, damping_ratio: assumed", "stiffness_ratio: 1"),
     ("stop: {length: assumed,", "stop: {length: 60,"),
     ("restitution: assumed", "restitution: 1.5"),

@@ -336,7 +336,7 @@ pub(crate) fn mistakes_that_a_person_makes_are_told_where_they_stand() {
         ),
         (
             with("solver: event_driven", "solver: {fixed_step: {time_step: 1 s}}"),
-            "13:3 a time step of 1 s is longer than the forcing period of 0.19869176531592203 s (at force_ratio = 0.1, stop = with)",
+            "15:7 a time step of 1 s is longer than the forcing period of 0.19869176531592203 s (at force_ratio = 0.1, stop = with)",
         ),
         (
             with("impulse_train: {", "pulse_train: {shape: rectangular, duration: 1 s, "),
