@@ -89,7 +89,7 @@ pub struct Standing {
     pub numbers: BTreeMap<String, Number>,
 }
 
-/// A number that came out, to 15 significant digits: what every reader of JSON gives back, and this one.
+/// A number that came out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Number {
     /// S.
@@ -99,7 +99,10 @@ pub struct Number {
 }
 
 impl Number {
-    /// Rounds both.
+    /// There is none.
+    pub(super) const NONE: Self = Self { value: f64::NAN, u: f64::NAN };
+
+    /// Both to 15 significant digits: what every reader of JSON gives back, and this one.
     pub(super) fn of(value: f64, u: f64) -> Self {
         // The text of a number always reads back.
         let rounded = |x: f64| format!("{x:.14e}").parse().unwrap_or(x);

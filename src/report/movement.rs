@@ -74,12 +74,12 @@ impl Movement {
         self.words() > 0 || self.moved.iter().any(Moved::is_beyond)
     }
 
-    fn number(&mut self, name: &str, unit: &str, a: (f64, f64), b: (f64, f64)) {
-        if a.0.to_bits() == b.0.to_bits() || a.0.is_nan() && b.0.is_nan() {
+    fn number(&mut self, name: &str, unit: &str, a: Number, b: Number) {
+        if a.value.to_bits() == b.value.to_bits() || a.value.is_nan() && b.value.is_nan() {
             self.same += 1;
         } else {
-            let u = libm::hypot(a.1, b.1);
-            self.moved.push(Moved { name: name.into(), unit: unit.into(), from: a.0, to: b.0, u });
+            let u = libm::hypot(a.u, b.u);
+            self.moved.push(Moved { name: name.into(), unit: unit.into(), from: a.value, to: b.value, u });
         }
     }
 
@@ -100,7 +100,7 @@ pub fn between_tables(a: &Table, b: &Table) -> Movement {
             continue;
         };
         for (name, measure) in &old.measures {
-            let there = new.measures.get(name).map_or((f64::NAN, f64::NAN), |measure| measure.at(*other));
+            let there = new.measures.get(name).map_or(Number::NONE, |measure| measure.at(*other));
             movement.number(&format!("{name} at {key}"), measure.unit, measure.at(*row), there);
         }
     }
@@ -125,9 +125,7 @@ pub fn between_verdicts(a: &[Standing], b: &[Standing]) -> Movement {
             movement.read_differently.push((old.id.clone(), old.found.clone(), new.found.clone()));
         }
         for name in old.numbers.keys().chain(new.numbers.keys()).collect::<BTreeSet<_>>() {
-            let [here, there] = [old, new].map(|standing| {
-                standing.numbers.get(name).map_or((f64::NAN, f64::NAN), |number| (number.value, number.u))
-            });
+            let [here, there] = [old, new].map(|standing| standing.numbers.get(name).copied().unwrap_or(Number::NONE));
             let name = if name.is_empty() { old.id.clone() } else { format!("{}, {name}", old.id) };
             movement.number(&name, "", here, there);
         }
@@ -162,10 +160,10 @@ struct Measure<'t> {
 
 impl Measure<'_> {
     /// The number and its uncertainty: its own error, and no less than the standard error of the ensemble's mean.
-    fn at(&self, row: usize) -> (f64, f64) {
+    fn at(&self, row: usize) -> Number {
         let members = self.members.map_or(1, |members| members[row]).max(1);
         let spread = self.spread.map_or(0.0, |spread| spread[row]) / (members as f64).sqrt();
-        (self.value[row], self.own[row].max(spread))
+        Number { value: self.value[row], u: self.own[row].max(spread) }
     }
 }
 
